@@ -25,7 +25,7 @@ from .stability.linearization import motion_at, state_at
 Floats = NDArray[np.float64]
 
 
-KEPT = {Index.THREE: "constraint", Index.TWO: "rate", Index.ONE: "acceleration", Index.GGL: "rate"}
+CONSTRAINT_FORM = {Index.THREE: "constraint", Index.TWO: "rate", Index.ONE: "acceleration", Index.GGL: "rate"}
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,7 +69,7 @@ class Dae:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the components of y."""
-        multipliers = [self.equations.multipliers[beta] for beta in self._kept]
+        multipliers = [self.equations.multipliers[beta] for beta in self._independent]
         return (*self.problem.state, *multipliers, *(f"mu{k}" for k in range(1, self._added + 1)))
 
     @property
@@ -80,12 +80,12 @@ class Dae:
     @property
     def y0(self) -> Floats:
         """The initial y, consistent."""
-        return np.concatenate([self._start.state, self._start.multipliers[self._kept], np.zeros(self._added)])
+        return np.concatenate([self._start.state, self._start.multipliers[self._independent], np.zeros(self._added)])
 
     @property
     def yp0(self) -> Floats:
         """The consistent initial y', with zeros for the algebraic components."""
-        velocities, others = self._start.state[self._n :], np.zeros(len(self._kept) + self._added)
+        velocities, others = self._start.state[self._n :], np.zeros(len(self._independent) + self._added)
         return np.concatenate([velocities, self._start.accelerations, others])
 
     @cached_property
@@ -117,7 +117,7 @@ class Dae:
         ndarray, shape (N,)
         """
         (q, v, _, mu), (q_rate, *_), here = self._evaluated(t, y, yp)
-        rows = [q_rate - v, here["equation"], here[KEPT[self.index]]]
+        rows = [q_rate - v, here["equation"], here[CONSTRAINT_FORM[self.index]]]
         if self.index is Index.GGL:
             rows[0] = rows[0] - here["constraint_by_q"].T @ mu
             rows.append(here["constraint"])
@@ -142,12 +142,12 @@ class Dae:
         ndarray, shape (N, N)
         """
         (*_, mu), _, here = self._evaluated(t, y, yp)
-        n, g, h = self._n, len(self._kept), self._added
-        J, kept = here["constraint_by_q"], KEPT[self.index]
+        n, g, h = self._n, len(self._independent), self._added
+        J, form = here["constraint_by_q"], CONSTRAINT_FORM[self.index]
         parts = [
             [factor * np.eye(n), -np.eye(n), np.zeros((n, g))],
             [here["equation_by_q"], here["equation_by_v"] + factor * here["equation_by_a"], -J.T],
-            [here[f"{kept}_by_q"], here[f"{kept}_by_v"] + factor * here[f"{kept}_by_a"], np.zeros((g, g))],
+            [here[f"{form}_by_q"], here[f"{form}_by_v"] + factor * here[f"{form}_by_a"], np.zeros((g, g))],
         ]
         if h:
             parts[0][0] = parts[0][0] - self._curvature(t, y, yp, mu)
@@ -173,13 +173,13 @@ class Dae:
         return len(self.equations.coordinates)
 
     @property
-    def _kept(self) -> list[int]:
+    def _independent(self) -> list[int]:
         return list(self.problem.independent)
 
     @property
     def _added(self) -> int:
         """Number of multipliers mu."""
-        return len(self._kept) if self.index is Index.GGL else 0
+        return len(self._independent) if self.index is Index.GGL else 0
 
     def _evaluated(
         self, t: float, y: ArrayLike, yp: ArrayLike
@@ -188,10 +188,10 @@ class Dae:
 
         The gradients of the equations are included.
         """
-        ends = np.cumsum([self._n, self._n, len(self._kept)])
+        ends = np.cumsum([self._n, self._n, len(self._independent)])
         parts, rates = (np.split(np.asarray(each, dtype=float), ends) for each in (y, yp))
         multipliers = np.zeros(len(self.equations.multipliers))
-        multipliers[self._kept] = parts[2]
+        multipliers[self._independent] = parts[2]
         state = np.concatenate(parts[:2])
         point = Point(t, state, rates[1], multipliers, self.equations.controls_at(t))
-        return parts, rates, self.equations.at(point, self._kept)
+        return parts, rates, self.equations.at(point, self._independent)

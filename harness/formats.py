@@ -88,7 +88,7 @@ def read(document: Document, text: str) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise _refusal(document, f"it is not JSON, {error}") from None
+        raise _error(document, f"it is not JSON, {error}") from None
     require(document, content)
     return content
 
@@ -111,9 +111,9 @@ def require(document: Document | Publication, content: Any) -> None:
     try:
         errors = list(_validator(document).iter_errors(content))
     except UnicodeEncodeError as error:  # half of a character, which JSON can write
-        raise _refusal(document, str(error)) from None
+        raise _error(document, str(error)) from None
     if error := min(errors, key=lambda each: len(each.instance_path), default=None):
-        raise _refusal(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")
+        raise _error(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")
 
 
 def _json_path(steps: Iterable[str | int]) -> str:
@@ -181,5 +181,5 @@ def _validator(name: str) -> "Draft202012Validator":
     return Draft202012Validator(schema(name))
 
 
-def _refusal(document: Document | Publication, detail: str) -> HolonomError:
+def _error(document: Document | Publication, detail: str) -> HolonomError:
     return HolonomError(ErrorKind.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")

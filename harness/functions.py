@@ -92,21 +92,21 @@ def _real(name: str) -> Callable[..., Any]:
     return lambda mp, *x: None if any(map(mp.im, x)) else getattr(mp, name)(*x)
 
 
-def _bessel(letter: str, before: int, after: int) -> Function:
+def _bessel(symbol: str, before: int, after: int) -> Function:
     """Return a Bessel function, given the signs of its neighbours in the derivative."""
-    head = f"Bessel{letter}"
+    head = f"Bessel{symbol}"
     neighbours = (_times(before, [head, ["Add", "n", -1], "x"]), _times(after, [head, ["Add", "n", 1], "x"]))
-    slope, name = ["Divide", ["Add", *neighbours], 2], letter.lower()
-    return Function(head, f"bessel_{name}", letter, "", slope, f"bessel{name}", 2, of_an_order=True, special=True)
+    slope, name = ["Divide", ["Add", *neighbours], 2], symbol.lower()
+    return Function(head, f"bessel_{name}", symbol, "", slope, f"bessel{name}", 2, of_an_order=True, special=True)
 
 
-def _airy(letter: str) -> tuple[Function, Function]:
-    name, prime = f"airy{letter}i", f"airy{letter}iprime"
-    head, scene, latex = f"Airy{letter.upper()}i", f"airy_{letter}i", f"{letter.upper()}i"
+def _airy(symbol: str) -> tuple[Function, Function]:
+    name, prime = f"airy{symbol}i", f"airy{symbol}iprime"
+    head, scene, latex = f"Airy{symbol.upper()}i", f"airy_{symbol}i", f"{symbol.upper()}i"
     return (
         Function(head, scene, latex, "", [f"{head}Prime", "x"], name, special=True),
         Function(
-            f"{head}Prime", f"airy_d{letter}i", f"{latex}'", "", _times("x", [head, "x"]), prime, special=True,
+            f"{head}Prime", f"airy_d{symbol}i", f"{latex}'", "", _times("x", [head, "x"]), prime, special=True,
             value=lambda mp, x: getattr(mp, name)(x, derivative=1),
         ),
     )  # fmt: skip

@@ -154,7 +154,7 @@ def put_into_maxima(directory: Path) -> Path:
         The directory has a file of such a name that is not Holonom's, or cannot be written to.
     """
     stub, helping, files = directory / STUB, directory / HELP, help_files()
-    if stub.exists() and not _is_ours(stub):
+    if stub.exists() and not _is_own(stub):
         raise HolonomError(ErrorKind.UNRELATED_IN_MAXIMA, detail=str(stub))
     for name in files.keys() - written_before(helping):
         if (helping / name).exists():
@@ -186,7 +186,7 @@ def stub_text(library: Path, helping: Path) -> str:
     )
 
 
-def _is_ours(stub: Path) -> bool:
+def _is_own(stub: Path) -> bool:
     try:
         return stub.read_bytes().startswith(MARK.encode())
     except OSError:

@@ -44,7 +44,7 @@ def _decimal(text: str) -> mpmath.mpf:
 
     These are more than mpmath keeps.
     """
-    kept = mpmath.mp.dps + SPARE_DIGITS
+    digits = mpmath.mp.dps + SPARE_DIGITS
     if len(text) <= sys.int_info.default_max_str_digits or not text.lstrip("-").isdigit():
         return mpmath.mpf(text)
-    return mpmath.mpf(text[:kept]) * mpmath.mpf(10) ** (len(text) - kept)
+    return mpmath.mpf(text[:digits]) * mpmath.mpf(10) ** (len(text) - digits)

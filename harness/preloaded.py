@@ -24,7 +24,7 @@ ENVIRONMENT = {"GCL_GC_PAGE_THRESH": "0.2", "GCL_GC_ALLOC_MIN": "0.01", "GCL_GC_
 ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
 QUIET = ("--init=/dev/null", "--very-quiet")
 
-KEPT = 8  # images, of several versions or installations: a gigabyte
+MOST_IMAGES = 8  # images, of several versions or installations: a gigabyte
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 MAKING = Limits(seconds=100.0, sandbox=Sandbox.TRUSTED)  # only the library is run
 PRELOAD = Path(__file__).with_name("preload.lisp")
@@ -170,5 +170,5 @@ def _put(saved: Path, image: Path) -> None:
         os.fsync(file.fileno())
     draft.replace(image)
     images = sorted(image.parent.glob("*.image"), key=lambda each: each.stat().st_mtime)
-    for each in images[:-KEPT]:
+    for each in images[:-MOST_IMAGES]:
         each.unlink(missing_ok=True)

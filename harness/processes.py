@@ -15,10 +15,10 @@ from contextlib import suppress
 from threading import Thread
 
 SIGNALLED = 128  # a shell adds this to the number of the signal that ended a command
-TICK = 0.1  # seconds between two looks for the parent, where the kernel does not tell of its end
+POLL_INTERVAL = 0.1  # seconds between two looks for the parent, where the kernel does not tell of its end
 ROUNDS = 500  # attempts to end all children, a hundredth of a second each
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
-HELD = re.compile(r"^(?:VmRSS|VmSwap|VmPTE|HugetlbPages):\s*(\d+) kB$", re.MULTILINE)  # of /proc/PID/status
+MEMORY_IN_USE = re.compile(r"^(?:VmRSS|VmSwap|VmPTE|HugetlbPages):\s*(\d+) kB$", re.MULTILINE)  # of /proc/PID/status
 
 
 def die_with_parent(parent: int) -> None:
@@ -45,7 +45,7 @@ def signal_without_parent(parent: int, number: int) -> None:
 
     def watch_parent() -> None:
         while os.getppid() == parent:
-            time.sleep(TICK)
+            time.sleep(POLL_INTERVAL)
         os.kill(os.getpid(), number)
 
     if not _control_process(PR_SET_PDEATHSIG, number):
@@ -102,7 +102,7 @@ def descendants(pid: int) -> list[int]:
     return found
 
 
-def held_memory(pid: int) -> int:
+def memory_in_use(pid: int) -> int:
     """Return the memory of a process.
 
     Page tables and swapped pages are included.
@@ -120,7 +120,7 @@ def held_memory(pid: int) -> int:
     if not os.path.exists("/proc/self/status"):
         return sum(1024 * int(kib) for kib in _printed_by("ps", "-o", "rss=", "-p", str(pid)))
     with suppress(OSError), open(f"/proc/{pid}/status", encoding="utf-8", errors="replace") as file:
-        return sum(1024 * int(kib) for kib in HELD.findall(file.read()))
+        return sum(1024 * int(kib) for kib in MEMORY_IN_USE.findall(file.read()))
     return 0
 
 

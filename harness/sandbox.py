@@ -44,7 +44,7 @@ ISOLATION = (
 KERNEL = ("--proc", "/proc", "--remount-ro", "/proc", "--dev", "/dev")
 # Words of bubblewrap if the kernel or a container forbids it, or if it is too old for these options.
 FORBIDDEN = ("not permitted", "ermission", "does not support", "Unknown option", "Read-only file system")
-UNCONFINED = (
+UNSANDBOXED = (
     "no sandbox, because bubblewrap is missing or not permitted: the scene file can access your files. "
     "Install or allow bubblewrap, or run with --trust."
 )
@@ -222,7 +222,7 @@ def is_isolated(limits: Limits) -> bool:
     return isolated
 
 
-def warn_unconfined(limits: Limits) -> None:
+def warn_unsandboxed(limits: Limits) -> None:
     """Warn if a scene file is not trusted and will run without a sandbox.
 
     Parameters
@@ -236,7 +236,7 @@ def warn_unconfined(limits: Limits) -> None:
         As `is_isolated`.
     """
     if limits.sandbox is not Sandbox.TRUSTED and not is_isolated(limits):
-        warnings.warn(UNCONFINED, stacklevel=3)
+        warnings.warn(UNSANDBOXED, stacklevel=3)
 
 
 @cache
@@ -362,7 +362,7 @@ def _require_little(pid: int, place: Place) -> int:
     Raise if they exceed the limits.
     """
     found = [pid, *processes.descendants(pid)]
-    memory = sum(map(processes.held_memory, found)) + _files_in_memory(found[:2][-1], place)
+    memory = sum(map(processes.memory_in_use, found)) + _files_in_memory(found[:2][-1], place)
     if memory > place.limits.memory_mib * MIB:
         raise LimitExceeded(ErrorKind.TOO_LARGE, f"{place.limits.memory_mib} MiB")
     if sum(map(processes.count_threads, found)) > place.limits.processes:

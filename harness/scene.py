@@ -18,14 +18,14 @@ from .files import near_file, scene_file
 from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
 from .program.request import DaeRequest, Request, Solve, read_settings
-from .sandbox import Limits, warn_unconfined
+from .sandbox import Limits, warn_unsandboxed
 from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
 from .simulation.request import SimulationRequest
 from .source import Source
 from .stability.request import AlongRequest, EquilibriaRequest, LinearizationRequest
 from .sweeps.request import SweepRequest
-from .temporary import KeptDirectory
+from .temporary import OwnDirectory
 
 if TYPE_CHECKING:
     from .crosscheck.report import CheckReport
@@ -120,7 +120,7 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     >>> one.system.coordinates
     ('x',)
     """
-    directory = KeptDirectory()
+    directory = OwnDirectory()
     file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
@@ -131,7 +131,7 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
 
 def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
     limits = limits or Limits()
-    warn_unconfined(limits)
+    warn_unsandboxed(limits)
     return Scene(file, scene, _settings(settings), limits)
 
 
@@ -204,7 +204,7 @@ def sweep(
     drawn = [axes.sample(name, text) for name, text in (sample or {}).items()]
     request = opened._request(options.pop("solve"))
     wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), read_quantities(keep), **options)
-    directory = KeptDirectory() if output is None else None
+    directory = OwnDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
     found = run_sweep(opened._source, request, wanted, folder, opened.limits)
     return replace(found, _directory=directory)
@@ -226,7 +226,7 @@ class Scene:
     def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
-        self._directory: KeptDirectory | None = None
+        self._directory: OwnDirectory | None = None
         self._source = Source(file, limits)
         self._derived = Derivations(self._source)
 

@@ -54,20 +54,20 @@ def call_filter() -> bytes:
     library.seccomp_init.restype = ctypes.c_void_p
     rules = ctypes.c_void_p(library.seccomp_init(ALLOW))
     for name in REFUSED.split():
-        _refuse(library, rules, name, EPERM)
-    _refuse(library, rules, "clone3", ENOSYS)  # its flags lie in memory; programs take clone then
+        _reject(library, rules, name, EPERM)
+    _reject(library, rules, "clone3", ENOSYS)  # its flags lie in memory; programs take clone then
     for flag in NAMESPACES:
-        _refuse(library, rules, "clone", EPERM, _Condition(0, MASKED_EQUAL, flag, flag))
+        _reject(library, rules, "clone", EPERM, _Condition(0, MASKED_EQUAL, flag, flag))
     for call, requests in (("ioctl", TERMINAL_INPUT), ("fcntl", FILE_LOCKS)):
         for request in requests:
-            _refuse(library, rules, call, EPERM, _Condition(1, MASKED_EQUAL, 0xFFFFFFFF, request))
+            _reject(library, rules, call, EPERM, _Condition(1, MASKED_EQUAL, 0xFFFFFFFF, request))
     try:
         return _exported(library, rules)
     finally:
         library.seccomp_release(rules)
 
 
-def _refuse(library: ctypes.CDLL, rules: ctypes.c_void_p, name: str, errno: int, *condition: _Condition) -> None:
+def _reject(library: ctypes.CDLL, rules: ctypes.c_void_p, name: str, errno: int, *condition: _Condition) -> None:
     number = library.seccomp_syscall_resolve_name(name.encode())
     if number < 0:  # this machine or this version of the library has no such call
         return

@@ -40,16 +40,16 @@ def private_directory() -> Iterator[Path]:
         os.close(lock)
 
 
-class KeptDirectory:
+class OwnDirectory:
     """A private directory that exists as long as this object does.
 
     Raises as `private_directory`.
     """
 
     def __init__(self) -> None:
-        held = ExitStack()
-        self.path = held.enter_context(private_directory())
-        weakref.finalize(self, held.close)
+        stack = ExitStack()
+        self.path = stack.enter_context(private_directory())
+        weakref.finalize(self, stack.close)
 
 
 def remove_abandoned_directories() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from holonom.sandbox import UNCONFINED, has_sandbox
+from holonom.sandbox import UNSANDBOXED, has_sandbox
 
 SANDBOXED = has_sandbox()
 
@@ -11,4 +11,4 @@ needs_sandbox = pytest.mark.skipif(not SANDBOXED, reason="bubblewrap is missing 
 
 def without_notice(said: str) -> str:
     """Remove the line about a missing sandbox from the standard error of a command, if this machine has none."""
-    return said if SANDBOXED else said.replace(f"holonom: warning: {UNCONFINED}\n", "", 1)
+    return said if SANDBOXED else said.replace(f"holonom: warning: {UNSANDBOXED}\n", "", 1)

@@ -137,7 +137,7 @@ def test_what_a_record_cannot_hold_is_refused(expression):
         from_sympy(expression)
 
 
-def test_depth_is_no_obstacle():
+def test_depth_is_no_obstruction():
     tree = "x"
     for _ in range(20_000):
         tree = ["Negate", tree]

@@ -88,7 +88,7 @@ def test_what_is_no_expression_is_refused(tree):
         scene_text(["Add", 1, tree])
 
 
-def test_depth_is_no_obstacle():
+def test_depth_is_no_obstruction():
     tree = "x"
     for _ in range(900):
         tree = ["Sin", tree]

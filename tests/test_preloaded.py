@@ -125,7 +125,7 @@ def test_while_one_process_makes_an_image_others_run_without(made, tmp_path):
 
 
 def test_oldest_images_are_removed_when_there_are_too_many(tmp_path, monkeypatch):
-    monkeypatch.setattr(preloaded, "KEPT", 3)
+    monkeypatch.setattr(preloaded, "MOST_IMAGES", 3)
     for i in range(5):
         saved, kept = tmp_path / "saved", tmp_path / f"{i}.image"
         saved.write_text("an image")

@@ -6,7 +6,7 @@ import sys
 import psutil
 import pytest
 
-from holonom.processes import count_threads, descendants, held_memory
+from holonom.processes import count_threads, descendants, memory_in_use
 
 STARTS_A_HOG = (
     "import subprocess, sys; subprocess.run([sys.executable, '-c', "
@@ -23,7 +23,7 @@ def test_descendants_and_their_memory_are_found(proc, monkeypatch):
         process.stdout.readline()
         found = descendants(process.pid)
         assert found == [each.pid for each in psutil.Process(process.pid).children(recursive=True)]
-        assert held_memory(found[-1]) > 10**8
+        assert memory_in_use(found[-1]) > 10**8
     finally:
         for each in [*psutil.Process(process.pid).children(), process]:
             each.kill()
@@ -33,7 +33,7 @@ def test_descendants_and_their_memory_are_found(proc, monkeypatch):
 def test_ended_process_takes_nothing():
     process = subprocess.Popen([sys.executable, "-c", ""])
     process.wait()
-    assert held_memory(process.pid) == 0
+    assert memory_in_use(process.pid) == 0
     assert descendants(process.pid) == []
 
 

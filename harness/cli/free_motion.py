@@ -44,7 +44,7 @@ def free(
     from ..documents import ask
     from ..formats import Document
 
-    with run_in_background(scene_file, limits, _import_what_follows):
+    with run_in_background(scene_file, limits, _import_readers):
         asked = request.scene, order, closed_form_size
         text = ask(Document.FREE_MOTION, scene_file, *asked, settings=request.settings, limits=limits)
 
@@ -58,7 +58,7 @@ def free(
     return DISAGREEMENT if contradicted else 0
 
 
-def _import_what_follows() -> None:
+def _import_readers() -> None:
     """Import SymPy and the modules of the analysis."""
     from ..display.free_motion import show_free_motion  # noqa: F401
     from ..free_motion import read_free_motion  # noqa: F401

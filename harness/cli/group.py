@@ -53,7 +53,7 @@ class Commands(click.Group):
             with naming_the_extra():
                 return super().invoke(ctx)
         except HolonomError as error:
-            return _refused(error, verbose, self._options(ctx), str(ctx.meta.get(STANDARD_INPUT, "")))
+            return _rejected(error, verbose, self._options(ctx), str(ctx.meta.get(STANDARD_INPUT, "")))
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
@@ -220,7 +220,7 @@ def _system_error(error: OSError) -> int:
     return _report(f"the operating system reports: {what}.", MACHINE_AT_FAULT)
 
 
-def _refused(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:
+def _rejected(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:
     """Report an error, without the name of the temporary copy of standard input."""
     named = "standard input"
     _report(error.message(options).replace(standing_in or named, named), error.kind.status)

@@ -115,7 +115,7 @@ def simulate(
 
     wanted = SimulationRequest(**options)
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
-    imports = partial(_import_what_follows, click.get_current_context().obj is OWN_PROCESS)
+    imports = partial(_import_readers, click.get_current_context().obj is OWN_PROCESS)
     with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
     problem = read_problem(document, source.description(request.settings).joints)
@@ -134,7 +134,7 @@ def simulate(
         streams,
         write_files,
     )
-    from ..simulation.simulate import follow
+    from ..simulation.simulate import integrate
     from ..simulation.simulate import simulate as follow_and_keep
 
     if curves is not None and plot_file is None:
@@ -148,7 +148,7 @@ def simulate(
     if output is not None and streams(output) and not drawn and (json_file is None or final):
         require_disk(problem, wanted.samples or 0, output)
         with motion_progress(problem.title) as progress, sample_file(output, digits) as take:
-            report = follow(problem, wanted, take, progress)
+            report = integrate(problem, wanted, take, progress)
     else:
         require_memory(problem, wanted.samples or 0, limits.memory_mib)
         with motion_progress(problem.title) as progress:
@@ -185,7 +185,7 @@ def _digits_of(precision: str) -> int:
     return read_precision(precision).digits
 
 
-def _import_what_follows(own_process: bool) -> None:
+def _import_readers(own_process: bool) -> None:
     """Import the modules needed next."""
     with suppress(ImportError, HolonomError):  # missing modules are reported when they are needed
         import jsonschema_rs  # noqa: F401

@@ -15,7 +15,7 @@ from ..failures import HolonomError
 from ..hidden import visible
 from ..options import choices_of, kind_of, options_of, read, read_time
 from ..program.request import Request, read_settings
-from ..sandbox import UNCONFINED, Limits, Sandbox, is_isolated
+from ..sandbox import UNSANDBOXED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
@@ -248,7 +248,7 @@ def _sandbox(trust: bool, sandbox: bool) -> Sandbox:
         return Sandbox.TRUSTED
     wanted = Sandbox.REQUIRED if sandbox else Sandbox.WHERE_POSSIBLE
     if not is_isolated(Limits(sandbox=wanted)):
-        click.echo(f"holonom: warning: {UNCONFINED}", err=True)
+        click.echo(f"holonom: warning: {UNSANDBOXED}", err=True)
     return wanted
 
 

@@ -203,7 +203,7 @@ def missing(derived: Derived) -> list[EquationVerdict]:
     list of EquationVerdict
         Verdicts on missing equations.
     """
-    return [found for found in derived.report.verdicts if not found.held and found.verdict is Verdict.DISAGREES]
+    return [found for found in derived.report.verdicts if not found.is_recorded and found.verdict is Verdict.DISAGREES]
 
 
 def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:

@@ -173,9 +173,9 @@ def _draw_radii(
         (coarse, ORDERS_OF_RADII[0], VERMILION, "s"),
         (fine, ORDERS_OF_RADII[1], BLUE, "o"),
     ):
-        told = [(float(u), r.estimate, r.uncertainty) for u, r in zip(controls, radii, strict=True) if r.estimate]
+        known = [(float(u), r.estimate, r.uncertainty) for u, r in zip(controls, radii, strict=True) if r.estimate]
         axes.errorbar(
-            *zip(*told, strict=True),
+            *zip(*known, strict=True),
             fmt=marker,
             color=colour,
             label=gettext("u = u₀ + t, %(order)s orders", order=order),

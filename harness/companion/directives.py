@@ -28,15 +28,15 @@ from .chapter import Run
 from .chapters import EXAMPLES
 from .finish import EQUATION, with_columns, with_equations
 from .fonts import mathematics_font
-from .kept import digest_of_all
 from .paper import chapters_of_the_paper
 from .sessions import answers_of
 from .shelf import Shelf
+from .stored_results import digest_of_all
 
 GRADES = 3
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
-KEPT = ".kept"  # the folder of results that a later build takes
+RESULTS = ".kept"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of what runs made, beside the pages
 
 
@@ -246,8 +246,8 @@ def _put_shelf(app: Sphinx, name: str, source: list[str]) -> None:
 def _shelf_of(app: Sphinx) -> Shelf:
     """Return the chapters of a build, those of the paper where no others were given."""
     if not hasattr(app, "holonom_shelf"):
-        files, kept = Path(app.outdir) / FILES, Path(app.doctreedir).parent / KEPT
-        app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, kept)
+        files, result_folder = Path(app.outdir) / FILES, Path(app.doctreedir).parent / RESULTS
+        app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, result_folder)
     return app.holonom_shelf
 
 
@@ -342,7 +342,7 @@ def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[
     before, now = getattr(env, "holonom_program", ""), digest_of_all()
     env.holonom_program = now
     shelf = _shelf_of(app)
-    same = before == now and shelf.kept is not None
+    same = before == now and shelf.result_folder is not None
     return [] if same else [name for name in env.found_docs if shelf.chapter(name)]
 
 
@@ -353,8 +353,8 @@ def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
 
 def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
     """Link the equations of a page, and add column names to its table cells."""
-    twins = context.get("folders", {}).items()
-    context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in twins]
+    partners = context.get("folders", {}).items()
+    context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
     if "body" in context and app.builder.name == "html":
         context["body"] = with_columns(with_equations(context["body"], _places_from(app, name)))
 

@@ -305,15 +305,15 @@ def description(system: System) -> list[Markup]:
 
 
 def _parts(system: System) -> Iterator[tuple[Expr, Expr]]:
-    yield _letter("T"), sympy.Add(*(effect.value for effect in system.kinetic_energy))
+    yield _symbol("T"), sympy.Add(*(effect.value for effect in system.kinetic_energy))
     if system.potential_energy:
-        yield _letter("V"), sympy.Add(*(effect.value for effect in system.potential_energy))
+        yield _symbol("V"), sympy.Add(*(effect.value for effect in system.potential_energy))
     if system.forces:
         for s, components in enumerate(zip(*(effect.value for effect in system.forces), strict=True), 1):
-            yield IndexedBase(_letter("Q"))[s], sympy.Add(*components)
+            yield IndexedBase(_symbol("Q"))[s], sympy.Add(*components)
     for beta, constraint in enumerate(system.constraints, 1):
-        yield IndexedBase(_letter("f"))[beta], constraint
+        yield IndexedBase(_symbol("f"))[beta], constraint
 
 
-def _letter(name: str) -> Symbol:
+def _symbol(name: str) -> Symbol:
     return Symbol(name, real=True)

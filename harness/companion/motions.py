@@ -16,7 +16,7 @@ from ..simulation.request import SimulationRequest
 from ..simulation.result import Report, Simulation
 from ..simulation.simulate import simulate
 from .chapter import Run
-from .runs import DEFAULT_LIMITS, NO_SETTINGS, Refusal, Settings, drawn, names_of_scenes, or_refusal
+from .runs import DEFAULT_LIMITS, NO_SETTINGS, FailedRun, Settings, drawn, names_of_scenes, or_failure
 
 SAMPLES = 1801
 SHOWN = ("trajectory", "multipliers")
@@ -56,11 +56,11 @@ def motion(file: Path, scene: str | None = None, until: Fraction | None = None) 
     Run
         Run with the result `Motion`.
     """
-    return Run(_follow, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
+    return Run(_simulate, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
 
 
 def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return the pictures of all motions of a file: by scene, a `Motion` or `Refusal`.
+    """Return the pictures of all motions of a file: by scene, a `Motion` or `FailedRun`.
 
     Parameters
     ----------
@@ -76,16 +76,16 @@ def motions(file: Path, settings: Settings, limits: Limits) -> Run:
     Run
         Run with the results by scene.
     """
-    return Run(_follow_all, (file, settings, limits))
+    return Run(_simulate_all, (file, settings, limits))
 
 
-def _follow_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | Refusal]:
+def _simulate_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | FailedRun]:
     """Follow every scene of a file."""
     names = names_of_scenes(file, settings, limits)
-    return {name: or_refusal(_follow, file, name, None, settings, limits) for name in names}
+    return {name: or_failure(_simulate, file, name, None, settings, limits) for name in names}
 
 
-def _follow(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
+def _simulate(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
     """Simulate a scene to a time, by default to the end of its time span.
 
     Raises

@@ -192,9 +192,9 @@ def _maxima_text(text: str) -> Markup:
 
     In English where the catalog does not know it.
     """
-    told = translated(text)
-    marked = NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(told)))
-    foreign = told == text and spoken() != ENGLISH
+    shown = translated(text)
+    marked = NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(shown)))
+    foreign = shown == text and spoken() != ENGLISH
     return Markup(f'<span lang="{ENGLISH}">{marked}</span>' if foreign else marked)
 
 

@@ -153,7 +153,7 @@ def _fitted(text: str, name: str) -> str:
 
 
 def browser() -> str:
-    """Return the browser that prints, or a `Refusal`.
+    """Return the browser that prints, or a `FailedRun`.
 
     Returns
     -------

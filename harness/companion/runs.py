@@ -48,7 +48,7 @@ class Derived:
 
 
 @dataclass(frozen=True)
-class Refusal:
+class FailedRun:
     """The reason for a missing answer."""
 
     reason: str
@@ -62,8 +62,8 @@ class FileAnswers:
     """
 
     derived: Derived
-    free: Mapping[str, FreeMotion | Refusal]  # by scene
-    series: Mapping[str, MotionSeries | Refusal]  # by scene
+    free: Mapping[str, FreeMotion | FailedRun]  # by scene
+    series: Mapping[str, MotionSeries | FailedRun]  # by scene
 
     @property
     def record(self) -> Record:
@@ -283,8 +283,8 @@ def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
     names = names_of_scenes(file, settings, limits)
     return FileAnswers(
         found,
-        {name: or_refusal(_free, file, name, settings, limits) for name in names},
-        {name: or_refusal(_series, file, name, OWN_ORDER, settings, limits) for name in names},
+        {name: or_failure(_free, file, name, settings, limits) for name in names},
+        {name: or_failure(_series, file, name, OWN_ORDER, settings, limits) for name in names},
     )
 
 
@@ -308,8 +308,8 @@ def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]
     return [scene.name for scene in describe(file, dict(settings), limits).scenes]
 
 
-def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """Return the value of a function, or a `Refusal`.
+def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the value of a function, or a `FailedRun`.
 
     Parameters
     ----------
@@ -321,9 +321,9 @@ def or_refusal(compute: Callable[..., Any], *arguments: Any) -> Any:
     Returns
     -------
     Any
-        Result, or the `Refusal`.
+        Result, or the `FailedRun`.
     """
     try:
         return compute(*arguments)
     except HolonomError as error:
-        return Refusal(str(error))
+        return FailedRun(str(error))

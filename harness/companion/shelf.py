@@ -8,9 +8,9 @@ from typing import Any
 from ..files import write_whole
 from ..language import speaking
 from .chapter import Chapter, Page, Run
-from .kept import results_of
 from .pages import environment
 from .runs import perform
+from .stored_results import results_of
 
 
 class Shelf:
@@ -24,7 +24,7 @@ class Shelf:
         What templates and figures speak.
     files : Path
         Where the figures and other files of the pages are put.
-    kept : Path or None
+    result_folder : Path or None
         Where results of runs are kept from one build to the next.
     results : dict, optional
         Those that are there already. Others are added.
@@ -37,11 +37,17 @@ class Shelf:
         chapters: Mapping[str, Chapter],
         language: str,
         files: Path,
-        kept: Path | None,
+        result_folder: Path | None,
         results: dict[Run, Any] | None = None,
         done: Callable[[], None] = lambda: None,
     ) -> None:
-        self.chapters, self.language, self.files, self.kept, self.done = chapters, language, files, kept, done
+        self.chapters, self.language, self.files, self.result_folder, self.done = (
+            chapters,
+            language,
+            files,
+            result_folder,
+            done,
+        )
         self.results = {} if results is None else results
         self.pages: dict[str, Page] = {}
 
@@ -55,7 +61,7 @@ class Shelf:
         """
         wanted = [run for name in names if (chapter := self.chapter(name)) for run in chapter.runs.values()]
         missing = [run for run in wanted if run not in self.results]
-        self.results.update(results_of(missing, self.kept, partial(perform, done=self.done)))
+        self.results.update(results_of(missing, self.result_folder, partial(perform, done=self.done)))
 
     def chapter(self, name: str) -> Chapter | None:
         """Return the chapter of a page, where it has one.
@@ -127,7 +133,7 @@ class Shelf:
         """
         if run not in self.results:
             self.results |= results_of(
-                [run], self.kept, lambda runs: {each: each.compute(*each.arguments) for each in runs}
+                [run], self.result_folder, lambda runs: {each: each.compute(*each.arguments) for each in runs}
             )
         return self.results[run]
 

@@ -13,7 +13,7 @@ from ..failures import ErrorKind, HolonomError
 from ..files import write_whole_directory
 from ..language import gettext, speaking
 from .chapter import Chapter, Run
-from .directives import FILES, KEPT
+from .directives import FILES, RESULTS
 from .own_scenes import texts_of_scenes
 from .printing import browser, print_site
 from .shelf import Shelf
@@ -57,12 +57,12 @@ def make_site(
     _require_site_or_nothing(directory)
     if pdf is not None:
         browser()  # before the work, not after it
-    root, kept = ("index", None) if scenes else ("book/index", directory / KEPT)
+    root, result_folder = ("index", None) if scenes else ("book/index", directory / RESULTS)
     results: dict[Run, Any] = {}
     for language in languages:
         first = language == languages[0]
         folder = directory if first else directory / language
-        shelf = Shelf(chapters, language, folder / FILES, kept, results, done)
+        shelf = Shelf(chapters, language, folder / FILES, result_folder, results, done)
         if scenes:
             shelf.perform(chapters)  # where one is refused, nothing is written
         with speaking(language):

@@ -129,20 +129,20 @@ class _Check:
         operations = operations_of(solved) if closed else None
         if derived.closed_form_operations != operations:
             detail = f"the record counts {derived.closed_form_operations}, and there are {operations}"
-            yield _refused(place, Item("closed_form_operations", "", "operations in (8) and (11)"), detail)
+            yield _rejected(place, Item("closed_form_operations", "", "operations in (8) and (11)"), detail)
 
     def _on_redundancy(
         self, place: Place, derived: Derivation, checked: CheckedDerivation, starts: Sequence[Mapping]
     ) -> Iterator[EquationVerdict]:
         names = [multiplier.name for multiplier in checked.system.multipliers]
-        kept = [name for name in names if name not in derived.redundant]
+        independent_names = [name for name in names if name not in derived.redundant]
         item = Item("redundant_constraints", "1", _redundant_in_words(derived.redundant))
-        if [*derived.redundant] != [name for name in names if name not in kept]:
-            yield _refused(place, item, "there are no such constraints")
+        if [*derived.redundant] != [name for name in names if name not in independent_names]:
+            yield _rejected(place, item, "there are no such constraints")
             return
         regular = derived.mass_matrix == "regular"
         found = self._time.result(
-            lambda: verify_redundancy(checked.system, kept, regular, starts, self._seed), OUT_OF_TIME
+            lambda: verify_redundancy(checked.system, independent_names, regular, starts, self._seed), OUT_OF_TIME
         )
         if names or found.verdict is not Verdict.AGREES:
             yield verdict_on(place, item, found)
@@ -180,11 +180,11 @@ class _Check:
                 compare = comparisons[equation.id]
                 yield self._verify(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
             else:
-                yield _refused(place, item, "no such equation belongs here; or it is there twice, or out of order")
-        held = {(each.id, each.number, each.name) for each in part.equations}
+                yield _rejected(place, item, "no such equation belongs here; or it is there twice, or out of order")
+        is_recorded = {(each.id, each.number, each.name) for each in part.equations}
         for item in items:
-            if item not in held:
-                yield _refused(place, item, "the record does not hold this equation", held=False)
+            if item not in is_recorded:
+                yield _rejected(place, item, "the record does not hold this equation", is_recorded=False)
 
     def _verify(
         self,
@@ -211,12 +211,12 @@ class _Check:
         expected = LeftOut(tuple(numbers), predicted, self._limit) if numbers else None
         if left_out != expected:
             detail = f"the record has {left_out or 'nothing'}, where {expected or 'nothing'} belongs"
-            yield _refused(place, Item("left_out", "", "what is left out"), detail)
+            yield _rejected(place, Item("left_out", "", "what is left out"), detail)
 
 
 def _as_verdict(difference: Difference) -> EquationVerdict:
     place = Place(0, difference.scene)
-    return _refused(place, Item("description", "", difference.what), difference.detail, held=False)
+    return _rejected(place, Item("description", "", difference.what), difference.detail, is_recorded=False)
 
 
 def _redundant_in_words(redundant: Sequence[str]) -> str:
@@ -225,11 +225,11 @@ def _redundant_in_words(redundant: Sequence[str]) -> str:
     )
 
 
-def _refused(place: Place, item: Item, reason: str, held: bool = True) -> EquationVerdict:
-    return verdict_on(place, item, CheckResult(Verdict.DISAGREES, None, None, reason), held=held)
+def _rejected(place: Place, item: Item, reason: str, is_recorded: bool = True) -> EquationVerdict:
+    return verdict_on(place, item, CheckResult(Verdict.DISAGREES, None, None, reason), is_recorded=is_recorded)
 
 
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
     nothing = CheckResult(Verdict.LEFT_OUT, None, None)
     for number in left_out.numbers if left_out else ():
-        yield verdict_on(place, Item("", number, "(not made)"), nothing, held=False, left_out=left_out)
+        yield verdict_on(place, Item("", number, "(not made)"), nothing, is_recorded=False, left_out=left_out)

@@ -69,15 +69,15 @@ class DescribedMotion:
             The motion without the constraints that end.
         """
         found, scene, ended = copy(self), self.scene, self.scene.released[k].multipliers
-        kept = [beta for beta, name in enumerate(self.system.multipliers) if name not in ended]
+        remaining = [beta for beta, name in enumerate(self.system.multipliers) if name not in ended]
         found.scene = replace(scene, released=scene.released[:k] + scene.released[k + 1 :])
         names, trees = self.system.multipliers, self.system.constraint_trees
         found.system = replace(
             self.system,
-            multipliers=tuple(names[beta] for beta in kept),
-            constraint_trees=tuple(trees[beta] for beta in kept),
+            multipliers=tuple(names[beta] for beta in remaining),
+            constraint_trees=tuple(trees[beta] for beta in remaining),
         )
-        found.constraints = [self.constraints[beta] for beta in kept]
+        found.constraints = [self.constraints[beta] for beta in remaining]
         found.ended = self.ended | set(ended)
         return found
 
@@ -191,9 +191,9 @@ class DescribedMotion:
         IrregularPoint
             As `Tape.values`.
         """
-        return self.tape.values(taylor, self.with_rates(taylor, curve), needed)
+        return self.tape.values(taylor, self.with_derivatives(taylor, curve), needed)
 
-    def with_rates(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
+    def with_derivatives(self, taylor: Taylor, curve: Curve) -> dict[str, Polynomial]:
         """Return a curve with the time derivatives of its coordinates and controls.
 
         Parameters
@@ -299,7 +299,7 @@ class DescribedMotion:
         Polynomial
         """
         lagrangian = self._gradient_of_lagrangian(taylor, values)
-        rates = self.with_rates(taylor, curve)
+        rates = self.with_derivatives(taylor, curve)
         parts = [
             taylor.multiply(rates[rate], lagrangian[rate]) for rate in self.system.velocities if rate in lagrangian
         ]

@@ -64,14 +64,14 @@ class IndependentEquations:
         return tuple(gradient(power, system.coordinates))
 
     @cached_property
-    def constraint_rates(self) -> tuple[sp.Expr, ...]:
+    def constraint_derivatives(self) -> tuple[sp.Expr, ...]:
         """The g constraints, differentiated once."""
-        return tuple(self.system.total_rate(f) for f in self.system.constraints)
+        return tuple(self.system.time_derivative(f) for f in self.system.constraints)
 
     @cached_property
     def constraint_accelerations(self) -> tuple[sp.Expr, ...]:
         """The g constraints, differentiated twice."""
-        return tuple(self.system.total_rate(rate) for rate in self.constraint_rates)
+        return tuple(self.system.time_derivative(rate) for rate in self.constraint_derivatives)
 
     @cached_property
     def driven(self) -> LinearEquations:
@@ -95,14 +95,14 @@ class IndependentEquations:
         )
 
     @cached_property
-    def bordered_rates(self) -> LinearEquations:
+    def bordered_derivatives(self) -> LinearEquations:
         """The bordered system, differentiated.
 
         These are equations for the n jerks and the time derivatives of the g multipliers.
         """
         return LinearEquations(
-            (*self.system.jerks, *self.system.multiplier_rates),
-            tuple(self.system.total_rate(residual) for residual in self.bordered.residuals),
+            (*self.system.jerks, *self.system.multiplier_derivatives),
+            tuple(self.system.time_derivative(residual) for residual in self.bordered.residuals),
         )
 
     @cached_property
@@ -128,7 +128,7 @@ class IndependentEquations:
         """Return d/dt dX/d dot(q_s) - dX/dq_s for each s, of a function X of the state."""
         system = self.system
         momenta, slopes = gradient(function, system.velocities), gradient(function, system.coordinates)
-        return tuple(system.total_rate(momentum) - slope for momentum, slope in zip(momenta, slopes, strict=True))
+        return tuple(system.time_derivative(momentum) - slope for momentum, slope in zip(momenta, slopes, strict=True))
 
 
 def reaction_power(system: MechanicalSystem) -> sp.Expr:
@@ -167,7 +167,7 @@ def rate_at_rest(system: MechanicalSystem, constraint: sp.Expr) -> sp.Expr:
     -------
     Expr
     """
-    return system.total_rate(constraint).subs(dict.fromkeys(system.velocities, 0))
+    return system.time_derivative(constraint).subs(dict.fromkeys(system.velocities, 0))
 
 
 def power_of_forces(system: MechanicalSystem) -> sp.Expr:

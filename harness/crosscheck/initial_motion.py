@@ -151,7 +151,7 @@ class CheckedScene:
         multipliers = self.derivation.multipliers()
         if multipliers is None:
             return None
-        rates = {self.system.rates[symbol]: self.system.total_rate(value) for symbol, value in multipliers.items()}
+        rates = {self.system.rates[symbol]: self.system.time_derivative(value) for symbol, value in multipliers.items()}
         together: dict[sp.Symbol, sp.Expr] = {}
         for solution in (*solutions, multipliers, rates):
             together.update(solution)
@@ -213,7 +213,7 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     require_given(checked, derived)
     pairs = (
         *_vanishing("constraint", checked.system.constraints),
-        *_vanishing("rate of constraint", checked.derivation.stated.constraint_rates),
+        *_vanishing("rate of constraint", checked.derivation.stated.constraint_derivatives),
     )
     return at_start(checked, pairs)
 
@@ -334,7 +334,7 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
         *_for_all_states(checked, checked.system.coordinates, checked.known.system.constraints, fixed),
-        *_for_all_states(checked, checked.system.velocities, checked.known.constraint_rates, fixed),
+        *_for_all_states(checked, checked.system.velocities, checked.known.constraint_derivatives, fixed),
     ]
     always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **checked.start})
     values = (Pair(name.name, fixed[name], name) for name in fixed)
@@ -479,7 +479,7 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
         Comparison(
             tuple(pairs),
             given=checked.start,
-            solves=(checked.known.bordered, checked.known.bordered_rates),
+            solves=(checked.known.bordered, checked.known.bordered_derivatives),
             certificate=checked.certificate(highest),
         ),
     )

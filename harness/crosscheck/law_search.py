@@ -152,7 +152,7 @@ class _Numbers:
             system,
             parameters,
             function([system.constraints, *zip(*jacobian, strict=True)]),
-            function([equations.constraint_rates]),
+            function([equations.constraint_derivatives]),
             function([*zip(*motion.coefficients, strict=True), motion.constants]),
         )
 

@@ -194,7 +194,7 @@ def values_of_inputs(
                 given |= {name: found[name] for name in map("ddot({})".format, motion.moved) if name in found}
                 for name, true in given.items():
                     yield PREMISES, ComparedValue(name, computed[name][0], true[0], abs(true[0]))
-            known = motion.parameters() | inputs | motion.with_rates(LAW, controls | inputs)
+            known = motion.parameters() | inputs | motion.with_derivatives(LAW, controls | inputs)
             known |= dict.fromkeys(motion.ended, (mp.zero,))
             for program, conditions in zip((problem.events, problem.releases), expressions, strict=True):
                 computed = {} if program is None else run(program, inputs)

@@ -176,7 +176,7 @@ def _verify_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str
         ProgramVerdict(
             programs.scene,
             f"motion program, {solve} solve",
-            CheckResult(Verdict.NOTHING, None, None, problem.obstacle or ""),
+            CheckResult(Verdict.NOTHING, None, None, problem.obstruction or ""),
         )
         for solve, problem in problems.items()
         if problem.motion is None
@@ -247,7 +247,7 @@ def _plain_states(
                     found = states.values_of_projection(system, corrections, computed, which)
                     yield from ((part, value) for value in found)
         if first.servo:
-            state = own.kept(state)
+            state = own.holding(state)
             inputs = own.inputs(state, x[n:])
             system = states.bordered(run(first.matrices, inputs), n, first.multipliers, redundant)
             law = own.controls(state, {})
@@ -279,7 +279,7 @@ def _released_states(
     def compared(attempt: int) -> Parts:
         for solve, own in drawn.items():
             problem, part = problems[solve], f"motion program, {solve} solve"
-            state = own.kept(own.state(attempt))
+            state = own.holding(own.state(attempt))
             found = run(problem.motion, own.inputs(state, own.random_numbers(attempt, len(problem.multipliers))))
             controls = own.controls(state, found)
             prescribed = motion.reactions.at(STATE, state["t"][0], motion.parameters())
@@ -291,8 +291,8 @@ def _released_states(
             for name in problem.multipliers[len(multipliers) :]:
                 yield part, ComparedValue(name, found[name][0], mp.zero, size)
             curve = own.curve(state, accelerations, controls)
-            kept = [*motion.constraints, *motion.outputs]
-            yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, kept))
+            holding = [*motion.constraints, *motion.outputs]
+            yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, holding))
 
     return compared
 
@@ -300,13 +300,13 @@ def _released_states(
 def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callable[[int], Parts]:
     """Return states of a program whose controls, and some parameters, are inputs."""
     system, part = motion.system, f"motion program, {program.solve} solve"
-    kept = [
+    holding = [
         place
         for place, name in zip(motion.constraints, system.multipliers, strict=True)
         if name not in program.redundant
     ]
     if f"lambda{len(motion.constraints) + len(motion.outputs) + 1}" not in program.outputs:  # all of relative degree 2
-        kept += motion.outputs
+        holding += motion.outputs
 
     def compared(attempt: int) -> Parts:
         import random
@@ -324,7 +324,7 @@ def _open_states(motion: DescribedMotion, program: Program, seed: str) -> Callab
         for q in system.coordinates:
             curve[q] = (inputs[q][0], inputs[f"dot({q})"][0], found[f"ddot({q})"][0] / 2)
         multipliers = [found[name][0] for name in system.multipliers]
-        yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, kept))
+        yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, holding))
 
     return compared
 
@@ -336,8 +336,8 @@ def _verify(scene: str | None, parts: list[str], compared: Callable[[int], Parts
     for attempt in range(ATTEMPTS * POINTS):
         if points == POINTS or len(wrong) == len(parts):
             break
-        told, regular = first_differences(partial(compared, attempt))
-        wrong = told | wrong
+        differences, regular = first_differences(partial(compared, attempt))
+        wrong = differences | wrong
         points += regular
     few = f"only {points} regular states were found among {ATTEMPTS * POINTS}"
     left = CheckResult(Verdict.AGREES, DIGITS, POINTS) if points == POINTS else None

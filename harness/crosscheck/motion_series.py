@@ -27,7 +27,7 @@ from .irregular_point import IrregularPoint
 from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, why_missing
 from .motion_start import values_of_start
 from .motion_states import ComparedValue
-from .program_values import Values, letters_of_tables, run_along, with_signs
+from .program_values import Values, run_along, symbols_of_tables, with_signs
 from .questions import ORDER, Answer, holds_special_functions
 from .report import CheckResult, Verdict
 from .taylor import Polynomial, Taylor
@@ -288,7 +288,7 @@ def _expanded(problem: MotionProblem) -> tuple[Values, Values]:
     """
     start = {name: mp.mpf(text) for name, text in problem.start.items()}
     known = {q: (start[q], start[f"dot({q})"]) for q in problem.coordinates}
-    fixed = dict.fromkeys(problem.multipliers, (mp.zero,)) | letters_of_tables(problem, start["t"])
+    fixed = dict.fromkeys(problem.multipliers, (mp.zero,)) | symbols_of_tables(problem, start["t"])
     fixed = with_signs(problem, fixed | {name: (x,) for name, x in start.items()})
     computed: Values = {}
     for order in range(ORDER - 1):

@@ -18,7 +18,7 @@ from mpmath import mp
 from ..program.motion_problem import MotionProblem
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
-from .program_values import Values, letters_of_tables, run, with_signs
+from .program_values import Values, run, symbols_of_tables, with_signs
 from .ranks import solved
 from .taylor import Taylor
 
@@ -62,8 +62,8 @@ class Bordered(NamedTuple):
         rows = list(self.rows)
         for beta in self.left_out:
             rows[self.n + beta] = {self.n + beta: mp.one}
-        kept = [mp.zero if i - self.n in self.left_out else x for i, x in enumerate(right)]
-        return solved(rows, kept)
+        holding = [mp.zero if i - self.n in self.left_out else x for i, x in enumerate(right)]
+        return solved(rows, holding)
 
     def compared(self, what: Sequence[str], x: Sequence[mp.mpf], right: Sequence[mp.mpf]) -> Iterator[ComparedValue]:
         """Check that numbers solve the equations.
@@ -133,7 +133,7 @@ class States:
                 state[name] = (value,)
         return state
 
-    def kept(self, state: Values) -> Values:
+    def holding(self, state: Values) -> Values:
         """Return the state moved onto the constraints, if servo-constraints need it.
 
         Their conditions agree there.
@@ -183,7 +183,7 @@ class States:
         """
         known = {name: value[:1] for name, value in state.items()}
         known |= {name: (x,) for name, x in zip(self.problem.multipliers, multipliers, strict=True)}
-        known |= letters_of_tables(self.problem, state["t"][0])
+        known |= symbols_of_tables(self.problem, state["t"][0])
         return with_signs(self.problem, known)
 
     def curve(self, state: Values, accelerations: Mapping[str, mp.mpf], controls: Values) -> Values:
@@ -459,7 +459,7 @@ def _residuals(system: Bordered, computed: Values, which: str) -> list[mp.mpf]:
 
 
 def values_by_substitution(
-    motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], kept: Sequence[int]
+    motion: DescribedMotion, curve: Values, multipliers: Sequence[mp.mpf], holding: Sequence[int]
 ) -> Iterator[ComparedValue]:
     """Check that the equations of motion hold along a curve through a state.
 
@@ -473,7 +473,7 @@ def values_by_substitution(
         Curve through the state.
     multipliers : sequence of mpf
         Value of each multiplier.
-    kept : sequence of int
+    holding : sequence of int
         Places on the tape of the constraints that hold.
 
     Yields
@@ -487,6 +487,6 @@ def values_by_substitution(
     ):
         yield ComparedValue(f"equation of motion of {q}", equation.value[0], mp.zero, equation.size[0])
     for beta, place in enumerate([*motion.constraints, *motion.outputs]):
-        if place in kept:
+        if place in holding:
             f = (*values[place], mp.zero, mp.zero)
             yield ComparedValue(f"second rate of constraint {beta + 1}", 2 * f[2], mp.zero, mp.zero)

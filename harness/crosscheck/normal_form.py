@@ -199,8 +199,8 @@ class NormalForms:
         position = self._position[relation.generator]
         by_exponent: dict[int, dict] = {}
         for monomial, coefficient in polynomial.items():
-            exponent, kept = divmod(monomial[position], relation.degree)
-            lowered = (*monomial[:position], kept, *monomial[position + 1 :])
+            exponent, remainder = divmod(monomial[position], relation.degree)
+            lowered = (*monomial[:position], remainder, *monomial[position + 1 :])
             by_exponent.setdefault(exponent, {})[lowered] = coefficient
         if not any(by_exponent):
             return polynomial

@@ -133,13 +133,13 @@ def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
     if list(scene.control_law) != list(motion.scene.control_law):
         return _difference(scene.control_law, motion.scene.control_law)
     with mp.workdps(CONFIRMING_DIGITS):
-        held = Law(scene.control_law.trees, motion.splines)
+        recorded_law = Law(scene.control_law.trees, motion.splines)
         parameters = {name: (mp.mpf(k) / 7,) for k, name in enumerate(motion.system.parameters, 8)}
         parameters |= motion.parameters()
         for k in range(1, TIMES + 1):
             time = motion.first_time + k * SHORTEST
             try:
-                found, stated = (law.at(Taylor(0), time, parameters) for law in (held, motion.law))
+                found, stated = (law.at(Taylor(0), time, parameters) for law in (recorded_law, motion.law))
             except IrregularPoint:
                 return f"the law has no value at t = {mp.nstr(time, 12)}"
             for name, (belongs,) in stated.items():

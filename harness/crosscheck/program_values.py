@@ -278,7 +278,7 @@ def _with_signs_of_reactions(problem: MotionProblem, inputs: Values) -> Values:
     return consistent[0]
 
 
-def letters_of_tables(problem: MotionProblem, time: mp.mpf) -> Values:
+def symbols_of_tables(problem: MotionProblem, time: mp.mpf) -> Values:
     """Return the numbers of the polynomial that each table is at a given time.
 
     Parameters

@@ -42,12 +42,12 @@ class Ranks(NamedTuple):
 
     mass: int
     every: int
-    kept: int
+    independent: int
 
 
 def verify_redundancy(
     described: MechanicalSystem,
-    kept: Sequence[str],
+    independent: Sequence[str],
     regular: bool,
     starts: Sequence[Mapping[sp.Symbol, sp.Expr]],
     seed: str,
@@ -58,7 +58,7 @@ def verify_redundancy(
     ----------
     described : MechanicalSystem
         With all constraints.
-    kept : sequence of str
+    independent : sequence of str
         Multipliers of the constraints that the record lists as independent.
     regular : bool
         True if the mass matrix is regular by the record.
@@ -72,7 +72,7 @@ def verify_redundancy(
     CheckResult
         Agreement, disagreement with the reason, or undecided.
     """
-    manifold = _Manifold(described, kept)
+    manifold = _Manifold(described, independent)
     with mp.workdps(WORKING_DIGITS):
         found = []
         for point in _configurations(manifold.names, described, starts, seed):
@@ -80,19 +80,19 @@ def verify_redundancy(
                 found.append(ranks)
             if len(found) == CONFIGURATIONS:
                 break
-    if not found and manifold.held_alone:
-        detail = "where the constraints that are kept hold, the others do not"
-        return CheckResult(Verdict.DISAGREES, DIGITS, manifold.held_alone, detail)
+    if not found and manifold.only_independent_hold:
+        detail = "where the independent constraints hold, the others do not"
+        return CheckResult(Verdict.DISAGREES, DIGITS, manifold.only_independent_hold, detail)
     if not found:
         return CheckResult(Verdict.UNDECIDED, None, None, "no configuration was found that keeps all constraints")
     largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
-    detail = _contradiction(largest, len(kept), len(described.coordinates), regular)
+    detail = _contradiction(largest, len(independent), len(described.coordinates), regular)
     return CheckResult(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
 
 
-def _contradiction(found: Ranks, kept: int, coordinates: int, regular: bool) -> str:
-    if found.every != kept or found.kept != kept:
-        return f"{found.every} constraints are independent, and {found.kept} of the {kept} listed as such"
+def _contradiction(found: Ranks, independent: int, coordinates: int, regular: bool) -> str:
+    if found.every != independent or found.independent != independent:
+        return f"{found.every} constraints are independent, and {found.independent} of the {independent} listed as such"
     if (found.mass == coordinates) != regular:
         return f"the mass matrix has the rank {found.mass} of {coordinates}"
     return ""
@@ -101,25 +101,25 @@ def _contradiction(found: Ranks, kept: int, coordinates: int, regular: bool) -> 
 class _Manifold:
     """The constraints and the mass matrix of a system, evaluated at configurations."""
 
-    def __init__(self, system: MechanicalSystem, kept: Sequence[str]) -> None:
+    def __init__(self, system: MechanicalSystem, independent: Sequence[str]) -> None:
         q, v = system.coordinates, system.velocities
-        own = [f for f, name in zip(system.constraints, system.multipliers, strict=True) if name.name in kept]
-        self._kept = Steps(own), Gradients(own, q)
+        own = [f for f, name in zip(system.constraints, system.multipliers, strict=True) if name.name in independent]
+        self._independent = Steps(own), Gradients(own, q)
         self._every = Steps(system.constraints), Gradients(system.constraints, q)
         self._mass = Gradients(gradient(system.kinetic_energy, v), v)
         symbols = set().union(*(f.free_symbols for f in (*system.constraints, system.kinetic_energy)))
         self.names = sorted({x.name for x in symbols | {*q}} - {x.name for x in v})
-        self.held_alone = 0  # configurations where the constraints that are kept hold, and not all others
+        self.only_independent_hold = 0  # configurations where the independent constraints hold, and not all others
 
     def ranks_near(self, point: Point) -> Ranks | None:
         """Return ranks at a configuration of the manifold near a point, or None."""
         state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         try:
-            moved_onto(state, *self._kept)
+            moved_onto(state, *self._independent)
             if left_over(state, *self._every):
-                self.held_alone += 1
+                self.only_independent_hold += 1
                 return None
-            matrices = self._mass.at(state), self._every[1].at(state), self._kept[1].at(state)
+            matrices = self._mass.at(state), self._every[1].at(state), self._independent[1].at(state)
         except IrregularPoint:
             return None
         return Ranks(*(Elimination(rows).rank for rows in matrices))

@@ -76,12 +76,12 @@ class EquationVerdict:
     points: int | None
     # for a disagreement the relation, the difference and the point; for what is undecided the reason; else empty
     detail: str
-    held: bool = True  # whether the record holds the equation
+    is_recorded: bool = True  # whether the record holds the equation
     left_out: LeftOut | None = None  # why the equation was not made
 
 
 def verdict_on(
-    place: Place, item: Item, found: CheckResult, held: bool = True, left_out: LeftOut | None = None
+    place: Place, item: Item, found: CheckResult, is_recorded: bool = True, left_out: LeftOut | None = None
 ) -> EquationVerdict:
     """Return the result for an equation as a verdict of a report.
 
@@ -93,7 +93,7 @@ def verdict_on(
         The equation.
     found : CheckResult
         Result of the comparison.
-    held : bool
+    is_recorded : bool
         True if the record holds the equation.
     left_out : LeftOut or None
         Reason why the equation was not made.
@@ -102,7 +102,9 @@ def verdict_on(
     -------
     EquationVerdict
     """
-    return EquationVerdict(**item._asdict(), **place._asdict(), **found._asdict(), held=held, left_out=left_out)
+    return EquationVerdict(
+        **item._asdict(), **place._asdict(), **found._asdict(), is_recorded=is_recorded, left_out=left_out
+    )
 
 
 @dataclass(frozen=True, repr=False)

@@ -142,17 +142,19 @@ def predicted_size(system: System, derived: Derivation, known: MechanicalSystem,
     """
     if any(symbol.name in system.multipliers for force in known.forces for symbol in force.free_symbols):
         return inf
-    kept = {multiplier.name for multiplier in known.multipliers}
+    multipliers = {multiplier.name for multiplier in known.multipliers}
     called = [
         *(["=", part.effect, displayed(part.tree)] for part in _called(system.kinetic_energy, derived.effects)),
         *(["=", part.effect, displayed(part.tree)] for part in _called(system.potential_energy, derived.effects)),
         *(["=", part.effect, ("[", *map(displayed, part.trees))] for part in _called(system.forces, derived.effects)),
     ]
     constraints = (
-        displayed(tree) for name, tree in zip(system.multipliers, system.constraint_trees, strict=True) if name in kept
+        displayed(tree)
+        for name, tree in zip(system.multipliers, system.constraint_trees, strict=True)
+        if name in multipliers
     )
     described = ("[", *map(tuple, called), *constraints)
-    length = size(described) * factorial(len(kept)) * (len(roots([described])) + 1)
+    length = size(described) * factorial(len(multipliers)) * (len(roots([described])) + 1)
     alone = length * factorial(_largest_block(known, False))
     if alone > limit or derived.mass_matrix == "regular":
         return min(alone, LARGEST_SIZE)

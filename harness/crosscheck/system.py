@@ -79,7 +79,7 @@ class MechanicalSystem:
         return tuple(dotted("dddot", q) for q in self.coordinates)
 
     @cached_property
-    def multiplier_rates(self) -> tuple[sp.Symbol, ...]:
+    def multiplier_derivatives(self) -> tuple[sp.Symbol, ...]:
         """The g rates dot(lambda)."""
         return tuple(dotted("dot", multiplier) for multiplier in self.multipliers)
 
@@ -88,7 +88,7 @@ class MechanicalSystem:
         """The rate of each symbol that changes along a motion."""
         return {
             self.time: sp.Integer(1),
-            **dict(zip(self.multipliers, self.multiplier_rates, strict=True)),
+            **dict(zip(self.multipliers, self.multiplier_derivatives, strict=True)),
             **{
                 lower: higher
                 for symbol in (*self.coordinates, *self.controls)
@@ -114,16 +114,16 @@ class MechanicalSystem:
         -------
         MechanicalSystem
         """
-        kept = [
+        pairs = [
             (multiplier, f)
             for multiplier, f in zip(self.multipliers, self.constraints, strict=True)
             if multiplier.name not in redundant
         ]
         return replace(
-            self, multipliers=tuple(multiplier for multiplier, _ in kept), constraints=tuple(f for _, f in kept)
+            self, multipliers=tuple(multiplier for multiplier, _ in pairs), constraints=tuple(f for _, f in pairs)
         )
 
-    def total_rate(self, expression: sp.Expr) -> sp.Expr:
+    def time_derivative(self, expression: sp.Expr) -> sp.Expr:
         """Return the total time derivative d/dt of an expression along any motion.
 
         Parameters

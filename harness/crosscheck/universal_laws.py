@@ -107,17 +107,17 @@ class _MovedByLaw:
         equations = IndependentEquations(system)
         history = dict(values)
         for control, expression in law.controls.items():
-            rate = system.total_rate(expression)
+            rate = system.time_derivative(expression)
             history |= {
                 control: expression,
                 dotted("dot", control): rate,
-                dotted("ddot", control): system.total_rate(rate),
+                dotted("ddot", control): system.time_derivative(rate),
             }
 
         def under_law(expressions: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
             return tuple(expression.xreplace(history).xreplace(values) for expression in expressions)
 
-        constraints, rates = under_law(system.constraints), under_law(equations.constraint_rates)
+        constraints, rates = under_law(system.constraints), under_law(equations.constraint_derivatives)
         positive = under_law(law.positive)
         laws = tuple(expression.xreplace(values) for expression in law.controls.values())
         self.multipliers = system.multipliers

@@ -406,10 +406,10 @@ def _distinguished(left: Number, right: Number) -> tuple[str, str]:
     """Return two numbers with enough digits to distinguish them."""
     with mp.workdps(CONFIRMING_DIGITS):
         for digits in range(SHOWN, CONFIRMING_DIGITS):
-            told = mp.nstr(left, digits), mp.nstr(right, digits)
-            if told[0] != told[1]:
+            texts = mp.nstr(left, digits), mp.nstr(right, digits)
+            if texts[0] != texts[1]:
                 break
-    return told
+    return texts
 
 
 def _where(point: Point) -> str:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from ..errata import PrintedEquation
     from ..record import Equation, LeftOut, Record, Relation
 
-HELD_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, more than any machine has
+LARGEST_IN_MEMORY = 10**12  # terms of closed forms: some bytes each, more than any machine has
 
 
 def show_record(console: Console, record: "Record") -> None:
@@ -147,7 +147,7 @@ def why_left_out(left_out: "LeftOut") -> str:
     if left_out.size is None:
         return "forces contain multipliers, and the equations are linear in them for each pattern of signs alone"
     size, limit = left_out.size, f"more than closed_form_size = {left_out.limit}"
-    if size > HELD_IN_MEMORY:
+    if size > LARGEST_IN_MEMORY:
         terms = f"{size:.0e} terms{' or more' if size == LARGEST_SIZE else ''}"
         return f"closed forms of {terms} are expected, {limit} and than memory holds"
     return (

@@ -125,7 +125,7 @@ def counted(count: int, what: str) -> str:
 
 
 def _shown(show: Callable[[Console], None]) -> Console:
-    kept = io.StringIO()
-    console = PlainConsole(record=True, width=CELL_WIDTH, file=kept, force_terminal=True, force_jupyter=False)
+    text = io.StringIO()
+    console = PlainConsole(record=True, width=CELL_WIDTH, file=text, force_terminal=True, force_jupyter=False)
     show(console)
     return console

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from ..language import gettext
 from ..stability.equilibria import Stability
-from .style import BLUE, GREEN, ORANGE, VERMILION, figure_style, legend_above, lettered, new_figure
+from .style import BLUE, GREEN, ORANGE, VERMILION, figure_style, legend_above, new_figure, with_symbols
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,8 +52,8 @@ def branches_figure(branches: "Branches") -> "Figure":
                     across, up = zip(*((value, q[name]) for value, q in kind), strict=True)
                     panel.plot(across, up, linestyle="none", markersize=3.0, label=gettext(stability), **mark)
         for name, panel in zip(names, panels, strict=True):
-            panel.set_ylabel(gettext("%(quantity)s\n(units of the scene)", quantity=lettered(name)))
+            panel.set_ylabel(gettext("%(quantity)s\n(units of the scene)", quantity=with_symbols(name)))
         panels[0].set_xlim(min(branches.values), max(branches.values))
-        panels[-1].set_xlabel(gettext("%(quantity)s (units of the scene)", quantity=lettered(branches.control)))
+        panels[-1].set_xlabel(gettext("%(quantity)s (units of the scene)", quantity=with_symbols(branches.control)))
         legend_above(panels[0])
     return figure

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
 from ..language import gettext, translated
-from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, lettered, new_figure, svg_text, write_figure
+from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, new_figure, svg_text, with_symbols, write_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -127,7 +127,7 @@ def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray
     for index, (name, samples) in enumerate(curves.items()):
         line = LINES[index // len(PALETTE) % len(LINES)]
         colour = PALETTE[index % len(PALETTE)]
-        axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=lettered(name))
+        axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=with_symbols(name))
     columns = math.ceil(len(curves) / IN_A_COLUMN)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 

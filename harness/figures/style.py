@@ -150,7 +150,7 @@ def legend_above(axes: "Axes") -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
 
 
-def lettered(name: str) -> str:
+def with_symbols(name: str) -> str:
     """Return the name of a quantity in symbols: λ₁ for lambda1, φ̇ for dot(phi).
 
     Parameters
@@ -163,13 +163,13 @@ def lettered(name: str) -> str:
     str
     """
     if rate := RATE.fullmatch(name):
-        letter, *rest = lettered(rate[2])
+        letter, *rest = with_symbols(rate[2])
         return letter + DOTS[rate[1]] + "".join(rest)
     stem, number = NUMBERED.fullmatch(name).groups()
     return _in_greek(stem) + number.translate(LOWERED)
 
 
-def lettered_text(text: str) -> str:
+def text_with_symbols(text: str) -> str:
     """Return a text with names of quantities in symbols.
 
     Parameters
@@ -181,7 +181,7 @@ def lettered_text(text: str) -> str:
     -------
     str
     """
-    return WORD.sub(lambda word: lettered(word[0]), text)
+    return WORD.sub(lambda word: with_symbols(word[0]), text)
 
 
 def _in_greek(name: str) -> str:

@@ -93,8 +93,8 @@ def plotted(document: dict[str, Any]) -> str:
         Name of a column.
     """
     names = {axis["name"] for axis in document["parameters"]}
-    kept = [name for name in document["columns"] if name not in names and name not in BESIDE]
-    return kept[0] if kept else "residual"
+    outputs = [name for name in document["columns"] if name not in names and name not in BESIDE]
+    return outputs[0] if outputs else "residual"
 
 
 def _curve(panel: "Axes", values: NDArray[np.float64], quantity: NDArray[np.float64]) -> None:

@@ -206,7 +206,7 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
 
 
 @dataclass(frozen=True)
-class Pieces:
+class SourceParts:
     """Statements of a function of C, and the functions that they call."""
 
     functions: str
@@ -215,7 +215,7 @@ class Pieces:
 
 def in_pieces(
     program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str], function: str, parameters: str
-) -> Pieces:
+) -> SourceParts:
     """Return a program as statements of C, or as calls of pieces if it is long.
 
     Values that a later piece needs are kept in an array ``w``.
@@ -231,38 +231,38 @@ def in_pieces(
 
     Returns
     -------
-    Pieces
+    SourceParts
     """
     if len(program.assignments) <= LONGEST:
-        return Pieces("", "\n".join(statements(program, target, inputs, writes)))
+        return SourceParts("", "\n".join(statements(program, target, inputs, writes)))
     results = list(zip(program.outputs.items(), writes, strict=True))
     parts = [*((part, []) for part in _parts(program.assignments)), *(((), part) for part in _parts(results))]
     uses = [_names_in_part(*part) for part in parts]
     last_use = {name: number for number, used in enumerate(uses) for name in used}
     given = dict(zip(program.inputs, inputs, strict=True))
-    kept_at: dict[str, int] = {}
+    place_of: dict[str, int] = {}
     free: list[int] = []
     size, functions = 0, []
     declared, passed = f"{parameters}, {target.type} *w", ", ".join([*names_of(parameters), "w"])
     for number, (assignments, outputs) in enumerate(parts):
-        kept_here = {name: f"w[{kept_at[name]}]" for name in uses[number] if name in kept_at}
-        reads = {name: given[name] for name in uses[number] if name in given} | kept_here
-        free += [kept_at.pop(name) for name in kept_here if last_use[name] == number]
-        kept = [name for name, _ in assignments if last_use.get(name, number) > number]
-        for name in kept:
-            kept_at[name] = free.pop() if free else size
-            size = max(size, kept_at[name] + 1)
+        stored_here = {name: f"w[{place_of[name]}]" for name in uses[number] if name in place_of}
+        reads = {name: given[name] for name in uses[number] if name in given} | stored_here
+        free += [place_of.pop(name) for name in stored_here if last_use[name] == number]
+        stored = [name for name, _ in assignments if last_use.get(name, number) > number]
+        for name in stored:
+            place_of[name] = free.pop() if free else size
+            size = max(size, place_of[name] + 1)
         piece = replace(
             program,
             inputs=tuple(reads),
             assignments=tuple(assignments),
-            outputs={name: Name(name) for name in kept} | dict(output for output, _ in outputs),
+            outputs={name: Name(name) for name in stored} | dict(output for output, _ in outputs),
         )
-        stores = [*(f"w[{kept_at[name]}] = {{value}};" for name in kept), *(write for _, write in outputs)]
+        stores = [*(f"w[{place_of[name]}] = {{value}};" for name in stored), *(write for _, write in outputs)]
         text = body_of(statements(piece, target, list(reads.values()), stores), names_of(declared))
         functions.append(f"PIECE void {function}_{number}({declared})\n{{\n{text}\n}}\n\n")
     calls = (f"{function}_{number}({passed});" for number in range(len(parts)))
-    return Pieces(NOT_INLINE + "".join(functions), "\n".join([f"{target.type} w[{size}];", *calls]))
+    return SourceParts(NOT_INLINE + "".join(functions), "\n".join([f"{target.type} w[{size}];", *calls]))
 
 
 def _parts(items: Sequence) -> list[Sequence]:
@@ -309,12 +309,12 @@ def body_of(lines: Iterable[str], parameters: Iterable[str]) -> str:
     return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
 
 
-def batch_support(many: Pieces) -> str:
+def batch_support(many: SourceParts) -> str:
     """Return the vector type and the functions that statements for `MANY` need.
 
     Parameters
     ----------
-    many : Pieces
+    many : SourceParts
         Statements for `MANY`.
 
     Returns

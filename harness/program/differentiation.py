@@ -94,14 +94,14 @@ class _Tape:
 
     def __init__(self, taken: set[str]) -> None:
         self.known: dict[Call, Name] = {}
-        self._letter = "v"
-        while any(name.startswith(self._letter) for name in taken):
-            self._letter += "v"
+        self._symbol = "v"
+        while any(name.startswith(self._symbol) for name in taken):
+            self._symbol += "v"
 
     def __call__(self, operation: Operation, *arguments: Atom) -> Atom:
         match folded(operation, list(arguments)):
             case Call() as call:
-                return self.known.setdefault(call, Name(f"{self._letter}{len(self.known) + 1}"))
+                return self.known.setdefault(call, Name(f"{self._symbol}{len(self.known) + 1}"))
             case atom:
                 return atom
 

@@ -50,13 +50,13 @@ class Sign(NamedTuple):
 class Origin(StrEnum):
     """The origin of an initial value if the parameters change.
 
-    ``GIVEN``: the scene gives it. ``NEAR``: the constraints determine it, near the scene's guess. ``FOLLOWED``: they
+    ``GIVEN``: the scene gives it. ``NEAR``: the constraints determine it, near the scene's guess. ``CONTINUED``: they
     determine it, near its value for the scene's parameters. ``ONLY``: they determine it, and contain it linearly.
     """
 
     GIVEN = "given"
     NEAR = "near"
-    FOLLOWED = "followed"
+    CONTINUED = "followed"
     ONLY = "only"
 
 
@@ -67,7 +67,7 @@ class ParametricStart:
     # of the open parameters: each coordinate and velocity, or what the search for it begins with
     program: Program | None
     origins: Mapping[str, Origin]
-    obstacle: str | None  # why the start cannot follow the parameters; there is a program where it can
+    obstruction: str | None  # why the start cannot follow the parameters; there is a program where it can
 
 
 @dataclass(frozen=True)
@@ -102,11 +102,11 @@ class MotionProblem:
     start: Mapping[str, str]
     # the given value that missed the constraints in its last digits and was corrected most, and by how much
     correction: Correction | None
-    obstacle: str | None  # why no order of pivots solves the equations of motion; None where one does
-    # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstacle
+    obstruction: str | None  # why no order of pivots solves the equations of motion; None where one does
+    # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
     motion: Program | None
     # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that keeps
-    # the constraints, up to second order in the residuals; None with an obstacle
+    # the constraints, up to second order in the residuals; None with an obstruction
     projection: Program | None
     # ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``, ``residual[beta]``,
     # ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c
@@ -203,7 +203,7 @@ class MotionProblem:
     @property
     def dependent(self) -> bool:
         """True if constraints may be dependent."""
-        return self.obstacle is not None or len(self.independent) < len(self.multipliers)
+        return self.obstruction is not None or len(self.independent) < len(self.multipliers)
 
     @property
     def state(self) -> tuple[str, ...]:
@@ -425,10 +425,10 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
     """
     outputs = {name: value for name, value in program.outputs.items() if name in wanted}
     needed = set().union(*map(names_in, outputs.values()))
-    kept = []
+    assignments = []
     for name, expression in reversed(program.assignments):
         if name in needed:
-            kept.append((name, expression))
+            assignments.append((name, expression))
             needed |= names_in(expression)
-    part = replace(program, outputs=outputs, assignments=tuple(reversed(kept)))
+    part = replace(program, outputs=outputs, assignments=tuple(reversed(assignments)))
     return replace(part, operations=count_operations(part))

@@ -267,7 +267,7 @@ def _takes(head: str, arguments: int) -> bool:
 def _atom(tree: object) -> Atom:
     match tree:
         case "ImaginaryUnit" | "True" | "False":
-            raise _refusal(f"{tree} is not a real number")
+            raise _error(f"{tree} is not a real number")
         case str():
             return Constant(tree) if tree in CONSTANTS else Name(tree)
         case ["Rational", numerator, denominator] if _number(denominator):
@@ -279,13 +279,13 @@ def _atom(tree: object) -> Atom:
 def _number(tree: object) -> Fraction:
     match tree:
         case bool():
-            raise _refusal(f"{tree} is not a number")
+            raise _error(f"{tree} is not a number")
         case int():
             return Fraction(tree)
         case {"num": str(digits), **rest} if not rest and len(digits) < LONGEST_NUMBER and DECIMAL.fullmatch(digits):
             return Fraction(digits)
         case _:
-            raise _refusal(f"{_shown(str(tree))} is not an expression that a program can hold")
+            raise _error(f"{_shown(str(tree))} is not an expression that a program can hold")
 
 
 def _within_double(number: Fraction) -> Fraction:
@@ -301,7 +301,7 @@ def _require_straight_line(program: Program) -> None:
     for name, expression in program.assignments:
         _require_known(names_in(expression), known)
         if name in known:
-            raise _refusal(f"{name} is computed twice")
+            raise _error(f"{name} is computed twice")
         known.add(name)
     for value in program.outputs.values():
         _require_known(names_in(value), known)
@@ -309,10 +309,10 @@ def _require_straight_line(program: Program) -> None:
 
 def _require_known(names: Set[str], known: Set[str]) -> None:
     if unknown := sorted(names - known):
-        raise _refusal(f"{unknown[0]} is used before it is computed")
+        raise _error(f"{unknown[0]} is used before it is computed")
 
 
-def _refusal(detail: str) -> HolonomError:
+def _error(detail: str) -> HolonomError:
     return HolonomError(ErrorKind.NOT_A_PROGRAM, detail=detail)
 
 

@@ -137,8 +137,8 @@ def _last_uses(program: Program) -> Mapping[str, int]:
     It is past the end for outputs.
     """
     uses = {used: index for index, (_, expression) in enumerate(program.assignments) for used in names_in(expression)}
-    kept = {value.text: len(program.assignments) for value in program.outputs.values() if isinstance(value, Name)}
-    return uses | kept
+    until_end = {value.text: len(program.assignments) for value in program.outputs.values() if isinstance(value, Name)}
+    return uses | until_end
 
 
 def _load(name: str) -> ast.expr:

@@ -22,7 +22,7 @@ class RightHandSide:
 
     def __post_init__(self) -> None:
         if self.problem.motion is None:
-            raise HolonomError(ErrorKind.NO_PIVOTS, detail=self.problem.obstacle)
+            raise HolonomError(ErrorKind.NO_PIVOTS, detail=self.problem.obstruction)
         require_analytic(self.problem)
 
     def __repr__(self) -> str:

@@ -186,14 +186,16 @@ def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Prog
     """
     if not problem.reacting:
         return []
-    held = next((name for name, sign in pattern.items() if sign == SLIDING), None)
+    sliding = next((name for name, sign in pattern.items() if sign == SLIDING), None)
     patterns = signs_of_reactions(problem, pattern)
     regular = computing(problem.switching, {"regular"})
-    sides = [pattern | ({held: to} if held else {}) for pattern in patterns for to in ((1, -1) if held else (1,))]
+    sides = [
+        pattern | ({sliding: to} if sliding else {}) for pattern in patterns for to in ((1, -1) if sliding else (1,))
+    ]
     found = [(1, program_in(problem, regular, each)) for each in sides]
-    if held is None or len(patterns) <= 2:
+    if sliding is None or len(patterns) <= 2:
         return found
-    grip = computing(problem.switching, {f"grip[{_index(problem, held)}]"})
+    grip = computing(problem.switching, {f"grip[{_index(problem, sliding)}]"})
     return found + [(-1, program_in(problem, grip, each)) for each in sides]
 
 
@@ -266,8 +268,8 @@ def at_start(problem: MotionProblem) -> MotionProblem:
 
 def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
     """Return a motion that starts as another one does."""
-    kept = ("start", "values", "correction", "moved", "nominal")
-    return replace(motion, **{name: getattr(problem, name) for name in kept})
+    shared = ("start", "values", "correction", "moved", "nominal")
+    return replace(motion, **{name: getattr(problem, name) for name in shared})
 
 
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
@@ -292,13 +294,13 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
     laws = {
         dots.format(name) for name in assigned if f"dot({name})" in assigned for dots in ("{}", "dot({})", "ddot({})")
     }
-    letters = _untaken("piece", {letter.rstrip("0123456789") for letter in {*assigned, *problem.matrices.inputs}})
+    symbols = _untaken("piece", {symbol.rstrip("0123456789") for symbol in {*assigned, *problem.matrices.inputs}})
 
     def opened(program: Program) -> Program:
         assignments = []
         for name, expression in program.assignments:
             if name in laws:
-                start = f"{letters}_{sorted(laws).index(name)}_"
+                start = f"{symbols}_{sorted(laws).index(name)}_"
                 expression = _with_names_for_numbers(expression, start, numbers)
             assignments.append((name, expression))
         return replace(program, assignments=tuple(assignments))
@@ -382,16 +384,16 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
         Program without these inputs.
     """
     known: dict[str, Expression] = dict(numbers)
-    kept = []
+    assignments = []
     for name, expression in program.assignments:
         value = _substituted(expression, known)
-        kept.append((name, value))
+        assignments.append((name, value))
         if isinstance(value, Fraction | Name | Constant):
             known[name] = value
     part = replace(
         program,
         inputs=tuple(name for name in program.inputs if name not in numbers),
-        assignments=tuple(kept),
+        assignments=tuple(assignments),
         outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
     )
     return computing(part, part.outputs)

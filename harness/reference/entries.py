@@ -14,7 +14,7 @@ FUNCTIONS = ("holonomic_system", "holonomic_scene")
 
 
 @dataclass(frozen=True)
-class Refusal:
+class ErrorExample:
     """An entry that raises an error, and a part of its message."""
 
     given: str
@@ -32,7 +32,7 @@ class EntryText:
     default: str
     text: str
     example: str
-    refused: tuple[Refusal, ...]
+    errors: tuple[ErrorExample, ...]
     also: tuple[str, ...] = ()  # entries that the example needs beside it
     system: tuple[str, ...] = ()  # entries of the system that the example needs in place of those of the same names
 
@@ -87,7 +87,7 @@ class PartText:
     text: str
     example: str
     context: tuple[str, ...]  # statements that the example needs before it
-    refused: tuple[Refusal, ...]
+    errors: tuple[ErrorExample, ...]
     gives: str = ""  # what the example returns, an expression of Maxima
 
 

@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from ..files import shared
-from .entries import EntryText, FunctionText, PartText, Refusal, function_texts, part_texts, step_texts
+from .entries import EntryText, ErrorExample, FunctionText, PartText, function_texts, part_texts, step_texts
 
 BY_HAND = shared("examples") / "paper" / "by_hand.mac"
 INFO = "holonom.info"
@@ -99,7 +99,7 @@ def _entry(entry: EntryText) -> str:
     if entry.system:
         system = ",\n".join(entry.system)
         text += f"{_filled('of a system with')}\n{_shown(system)}"
-    return text + (_refused(entry.refused) if entry.refused else "")
+    return text + (_errors(entry.lines) if entry.lines else "")
 
 
 def _part(part: PartText) -> str:
@@ -107,13 +107,13 @@ def _part(part: PartText) -> str:
     gives = f"\n{_filled('which gives')}\n{_shown(part.gives)}" if part.gives else ""
     return (
         f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('Example:')}\n{_shown(example)}{gives}"
-        f"{_refused(part.refused)}"
+        f"{_errors(part.lines)}"
     )
 
 
-def _refused(refusals: Sequence[Refusal]) -> str:
-    refused = "".join(_filled(f"{refusal.given}: {refusal.message}", 10, 14) for refusal in refusals)
-    return f"\n{_filled('Errors, and words of their messages:')}\n{refused}"
+def _errors(errors: Sequence[ErrorExample]) -> str:
+    lines = "".join(_filled(f"{error.given}: {error.message}", 10, 14) for error in errors)
+    return f"\n{_filled('Errors, and words of their messages:')}\n{lines}"
 
 
 def _filled(text: str, first: int = 5, later: int = 5) -> str:

@@ -150,7 +150,7 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
 
     outcome, *_ = integrator.propagate_until(last, callback=keep_state, max_steps=MOST_STEPS)
     if outcome != import_heyoka().taylor_outcome.time_limit:
-        _refuse_to_continue(float(integrator.time), len(states))
+        _raise_error(float(integrator.time), len(states))
     times, values = zip(*states, strict=True)
     rows = [(name, _texts(row, precision)) for name, row in zip(problem.state, zip(*values, strict=True), strict=True)]
     n = len(problem.coordinates)
@@ -258,7 +258,7 @@ def _texts(row: Sequence[Any], precision: Precision) -> NumberTexts:
     return tuple(map(precision.text, row))
 
 
-def _refuse_to_continue(time_point: float, states: int) -> None:
+def _raise_error(time_point: float, states: int) -> None:
     many = states > MOST_STEPS
     reason = f"it arrived after {MOST_STEPS} steps" if many else "its radius of convergence shrinks to nothing"
     raise HolonomError(

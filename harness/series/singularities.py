@@ -75,7 +75,7 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     zeros = sorted(_zeros(program, series, t0, bound), key=abs)
     for zero in zeros[:MOST_TESTED]:
         if abs(zero) <= bound and _is_singular(program, series, t0, zero):
-            untold = radius in UNTOLD and _follows_state(program)
+            untold = radius in UNTOLD and _depends_on_state(program)
             return _at_most(abs(zero), radius) if untold else _located(zero, zeros)
     return radius
 
@@ -96,7 +96,7 @@ def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
     return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), note, located=True)
 
 
-def _follows_state(program: Program) -> bool:
+def _depends_on_state(program: Program) -> bool:
     """Return True if the accelerations depend on the state.
 
     If so, a motion may be singular at times at which its equations are regular.

@@ -20,7 +20,7 @@ from ..program.motion_program import Call, Operation, Program, calls_in, names_i
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
-MISSED = {
+ERROR_TEXT = {
     "energy": "the energy",
     "acceleration": "a force that acts within a step",
     "multipliers": "a multiplier",
@@ -41,7 +41,7 @@ class AccuracyViolation(NamedTuple):
     @property
     def reason(self) -> str:
         """Clause that names the quantity, its error and the expected error."""
-        what = MISSED.get(self.quantity, f"the {self.quantity} that the constraints allow")
+        what = ERROR_TEXT.get(self.quantity, f"the {self.quantity} that the constraints allow")
         if np.isnan(self.error):
             return f"{what} has no finite value"
         return (
@@ -108,7 +108,7 @@ def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
     return MARGIN * max(tol, FINEST) * np.maximum(1, steps)
 
 
-def energy_missed(
+def relative_energy_error(
     start: tuple[Matrices, Vector],
     end: tuple[Matrices, Vector],
     error: float | Vector,

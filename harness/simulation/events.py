@@ -150,7 +150,7 @@ class Events(SignedFunctions):
         """Reject an expression without a real, finite value at a time of the motion."""
         for row, place in np.argwhere(~np.isfinite(values)):
             if found is None or places[place] <= found.t:
-                self._refuse(self._names[row], places[place])
+                self._reject(self._names[row], places[place])
 
     def _require_crossing(self, found: Crossing, part: Step, values: Numbers) -> None:
         """Reject a change of sign through infinity."""
@@ -158,9 +158,9 @@ class Events(SignedFunctions):
         at = np.array([found.t])
         seen = np.abs(values[self._names.index(found.name)])
         if abs(self.values(at, part.states(at))[row, 0]) > POLE * np.max(seen, where=np.isfinite(seen), initial=0.0):
-            self._refuse(found.name, found.t)
+            self._reject(found.name, found.t)
 
-    def _refuse(self, name: str, t: Any) -> None:
+    def _reject(self, name: str, t: Any) -> None:
         raise HolonomError(ErrorKind.NO_EVENT_VALUE, detail=f"{name} at t = {float(t):.10g}")
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:

@@ -95,7 +95,7 @@ def hard_cases(
         yield Difficulty.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield Difficulty.LONG_RUN
-    if stiffness(start) > STIFF or _held_back(start, end, steps):
+    if stiffness(start) > STIFF or _is_slowed(start, end, steps):
         yield Difficulty.STIFF
 
 
@@ -180,7 +180,7 @@ def fastest_decay(at: MotionState) -> float:
     return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
 
 
-def _held_back(start: MotionState, end: MotionState, steps: int) -> bool:
+def _is_slowed(start: MotionState, end: MotionState, steps: int) -> bool:
     """Return True if many steps were limited by a decay that has ended long before."""
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 

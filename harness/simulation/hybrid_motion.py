@@ -239,11 +239,11 @@ class HybridMotion:
 
     def _next_stop(self, until: Any) -> Any:
         stops, step = self.mode.stops, self._request.max_step
-        ticking = [self._precision.ratio(t) for t in islice(self._to_come, 1)] + [t for t, _ in self._knots[-1:]]
+        known_times = [self._precision.ratio(t) for t in islice(self._to_come, 1)] + [t for t, _ in self._knots[-1:]]
         next_stop = bisect_right(stops, float(self.time))
         ahead = stops[next_stop : next_stop + 1]
         limits = [self.time + self._precision.number(repr(step))] if step is not None else []
-        return min([until, *limits, *ticking, *(self._precision.number(repr(t)) for t in ahead)])
+        return min([until, *limits, *known_times, *(self._precision.number(repr(t)) for t in ahead)])
 
     def _pass_knots(self) -> None:
         """Continue at a knot of a law, which is continuous up to its second derivative."""
@@ -257,7 +257,7 @@ class HybridMotion:
             yield from mode.integrate(stop)
             return
         for step in mode.integrate(stop):
-            crossing = mode.surfaces.first_crossing(step, self._left)
+            crossing = mode.switching_functions.first_crossing(step, self._left)
             if crossing is None:
                 yield step
                 self._left = ()
@@ -301,10 +301,10 @@ class HybridMotion:
         """Continue from a switching surface of the state, or from a time event."""
         t, name, before = crossing.t, crossing.name, self.mode.pattern
         if name == UNIQUE:
-            self._refuse(t, NOT_UNIQUE)
+            self._reject(t, NOT_UNIQUE)
         again = t == self.intervals[-1].start and name in self._left
         if again or self._crowded(t):
-            self._refuse(t, f"{self._signs[name].of} changes its sign again and again")
+            self._reject(t, f"{self._signs[name].of} changes its sign again and again")
         pattern, sign = {**before, name: crossing.to}, self._signs[name]
         if before[name] != SLIDING and sign.by not in (DependsOn.TIME, DependsOn.REACTION):
             pattern[name] = self._sign_behind(sign, pattern, t, state, crossing.to)
@@ -342,7 +342,7 @@ class HybridMotion:
         if driven(self.problem, sign.name):
             return self._decided(sign, pattern, t, state)
         if to is None:
-            self._refuse(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion continues")
+            self._reject(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion continues")
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
@@ -353,12 +353,12 @@ class HybridMotion:
             return 1 if above > 0 else -1
         if above < 0 < below:
             if not holdable(self.problem, sign.name):
-                self._refuse(t, f"{sign.of} is held at zero by more forces than one that contain multipliers")
+                self._reject(t, f"{sign.of} is held at zero by more forces than one that contain multipliers")
             if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
-                self._refuse(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
+                self._reject(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
             return SLIDING
         if above > 0 > below:
-            self._refuse(t, f"{sign.of} is zero, and the motion may leave to either side")
+            self._reject(t, f"{sign.of} is zero, and the motion may leave to either side")
         return 1 if above >= 0 and below >= 0 else -1
 
     def _with_reactions(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
@@ -370,7 +370,7 @@ class HybridMotion:
             return pattern
         for side, function in self._unique(pattern):
             if not side * function(self._inputs(t, state))[0] > 0:
-                self._refuse(t, NOT_UNIQUE)
+                self._reject(t, NOT_UNIQUE)
         signs = [sign for sign in self.problem.signs if sign.by is DependsOn.REACTION]
 
         def least(each: Pattern) -> float:
@@ -393,12 +393,12 @@ class HybridMotion:
         left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
         energies = np.outer(self.nominal.velocities, self.nominal.velocities)
         if left > CONTINUOUS or not _close(new.mass * energies, old.mass * energies):
-            self._refuse(t, f"the constraints or the masses jump as {sign.of} changes its sign")
+            self._reject(t, f"the constraints or the masses jump as {sign.of} changes its sign")
         kick = np.subtract(*(as_floats(mode.momenta(self._inputs(t, state))) for mode in (before, after)))
         moved = state.copy()
         if np.max(np.abs(kick) * self.nominal.velocities, initial=0.0) > CONTINUOUS * self.nominal.energy(new.mass):
             if self._precision.name != "double":
-                self._refuse(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
+                self._reject(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         if after.problem.projection is None:
             moved = settle(after.matrices, float(t), as_floats(moved))[0]
@@ -410,9 +410,9 @@ class HybridMotion:
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
-                self._refuse(t, f"an impact decides how the motion continues as {sign.of} changes its sign")
+                self._reject(t, f"an impact decides how the motion continues as {sign.of} changes its sign")
             if jump > CONTINUOUS * max(self.nominal.energy(old.mass), abs(float(before.energy_at(t, state)))):
-                self._refuse(t, f"the energy jumps as {sign.of} changes its sign")
+                self._reject(t, f"the energy jumps as {sign.of} changes its sign")
         return moved
 
     def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
@@ -421,7 +421,7 @@ class HybridMotion:
         impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
         if np.max(np.abs(left)) > CONTINUOUS * np.max(np.abs(impulse)):
-            self._refuse(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
+            self._reject(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
 
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
         """Return the signs at the start, each function after its inputs."""
@@ -450,7 +450,7 @@ class HybridMotion:
     def _crowded(self, t: Any) -> bool:
         return len(self.intervals) > CROWD and float(t - self.intervals[-CROWD].start) < CROWDED * self._span
 
-    def _refuse(self, t: Any, reason: str) -> None:
+    def _reject(self, t: Any, reason: str) -> None:
         raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{float(t):.10g}, where {reason}")
 
     # ---- numbers at a given time ----

@@ -51,8 +51,8 @@ class InitialStates:
 
     def __init__(self, problem: MotionProblem) -> None:
         start = problem.parametric_start
-        if start.obstacle is not None:
-            raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstacle)
+        if start.obstruction is not None:
+            raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstruction)
         self._time, self._n = float(problem.start["t"]), len(problem.coordinates)
         self._evaluate = batch_evaluation(problem, start.program)
         self._matrices, self._redundant = BatchMatrices(problem), problem.dependent
@@ -361,7 +361,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         The start cannot follow the parameters, or not to one that is known to be the only one; there is none for these
         values.
     """
-    if Origin.FOLLOWED in problem.parametric_start.origins.values():
+    if Origin.CONTINUED in problem.parametric_start.origins.values():
         reason = "no closed form gives it for all values of the parameters; put near values into initial_guess"
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}

@@ -95,8 +95,8 @@ def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
     parameters = [name for name in directions if name in problem.parameters]
     if not parameters:
         return moves
-    if start.obstacle is not None:
-        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstacle)
+    if start.obstruction is not None:
+        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstruction)
     seeds = {name: {name: size_of(problem, name)} for name in parameters}
     program = differentiated(start.program, seeds)
     found = dict(zip(program.outputs, NumpyFunction(program)(problem.numbers), strict=True))

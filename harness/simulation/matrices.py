@@ -62,7 +62,7 @@ class MotionMatrices:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_signs_known(problem)
-        self._problem, self._kept = problem, problem.independent
+        self._problem, self._independent = problem, problem.independent
         self._layout = _Layout(problem)
         self._evaluate = evaluation_once(problem, problem.matrices, read_precision("double"))
         self._inputs = Inputs(problem)
@@ -102,7 +102,7 @@ class MotionMatrices:
         -------
         Matrices
         """
-        return self(t, state).under(self._kept)
+        return self(t, state).under(self._independent)
 
 
 class BatchMatrices:

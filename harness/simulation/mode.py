@@ -41,7 +41,7 @@ NO_ROUNDING: Mapping[str, float] = {}
 FREE = 1e-12  # of the nominal size of a multiplier: no reaction
 
 
-class Surfaces(SignedFunctions):
+class SwitchingFunctions(SignedFunctions):
     """The surfaces on which a pattern of signs ends.
 
     Signs whose changes are known beforehand have none.
@@ -135,14 +135,14 @@ class Mode:
         if any(sign.by is DependsOn.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
         self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, precision)
-        obstacle = analytic.obstacle or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
-        self.problem = replace(analytic, obstacle=obstacle)
+        obstruction = analytic.obstruction or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
+        self.problem = replace(analytic, obstruction=obstruction)
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         dense = bool(request.samples != FINAL_STATE_ALONE or self.balance.inner_states)
         dense = None if problem.signs or problem.tables else dense
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
-        self._doubtful = vanishing_times(self.problem, self.matrices, self._end)
+        self._vanishing = vanishing_times(self.problem, self.matrices, self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         self.by_time = time_dependence(
             program_with_values(self.problem, self.problem.matrices),
@@ -151,14 +151,16 @@ class Mode:
             self.problem.tables,
         )
         ends = () if self.by_time.end is None else (self.by_time.end,)
-        before = (shortly_before(t, self._start) for t in self._doubtful)
+        before = (shortly_before(t, self._start) for t in self._vanishing)
         self.stops = sorted({*self.by_time.stops, *ends, *before})
 
     @cached_property
-    def surfaces(self) -> Surfaces:
+    def switching_functions(self) -> SwitchingFunctions:
         """The surfaces on which the pattern ends."""
         span = self._end - self._start
-        return Surfaces(self.whole, self.pattern, self._precision, span, self._time_events, self._reactions_of_rounding)
+        return SwitchingFunctions(
+            self.whole, self.pattern, self._precision, span, self._time_events, self._reactions_of_rounding
+        )
 
     @property
     def _reactions_of_rounding(self) -> Mapping[str, float]:
@@ -301,7 +303,7 @@ class Mode:
         now = self.engine.time
         if self.by_time.end is not None and float(now) >= self.by_time.end and now != until:
             raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.by_time.end:.10g}, where {self.by_time.reason}")
-        for t in self._doubtful:
+        for t in self._vanishing:
             if shortly_before(t, self._start) == float(now):
                 require_gradient(self.problem, t, MotionState(self.matrices, float(now), as_floats(self.engine.state)))
 

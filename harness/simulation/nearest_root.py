@@ -93,13 +93,13 @@ class NearestRoots:
             if not len(open_):
                 break
             trial = here[:, open_] + share * change[:, open_]
-            following = self._following(trial, at, elements, open_)
+            following = self._next_roots(trial, at, elements, open_)
             good = np.max(np.abs(following), axis=0) <= (1 - share / 4) * size[open_]
             result[:, open_[good]] = trial[:, good]
             open_, share = open_[~good], share / 2
         return result
 
-    def _following(
+    def _next_roots(
         self, trial: Numbers, at: Linearized, elements: NDArray[np.int64], some: NDArray[np.int64]
     ) -> Numbers:
         """Return the corrections at other points with unchanged matrices."""
@@ -115,7 +115,7 @@ class NearestRoots:
         change = self._correct(at)
         size, contracts = np.max(np.abs(change), axis=0), np.ones(len(elements), dtype=bool)
         for share in ALONG:
-            left = self._following(guess + share * change, at, elements, elements) - (1 - share) * change
+            left = self._next_roots(guess + share * change, at, elements, elements) - (1 - share) * change
             contracts &= np.max(np.abs(left), axis=0) <= CONTRACTION * size
         return contracts
 

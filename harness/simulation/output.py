@@ -270,12 +270,12 @@ def _heading(name: str) -> str:
 @contextmanager
 def _npz(file: BinaryIO) -> Iterator[Write]:
     """Collect all samples, and write each quantity as one array at the end."""
-    kept: list[Columns] = []
-    yield kept.append
+    columns: list[Columns] = []
+    yield columns.append
     with zipfile.ZipFile(file, "w", zipfile.ZIP_DEFLATED) as archive:  # as NumPy does, of names that it reserves, too
-        for name in kept[0]:
+        for name in columns[0]:
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
-                np.lib.format.write_array(member, np.concatenate([each[name] for each in kept]), allow_pickle=False)
+                np.lib.format.write_array(member, np.concatenate([each[name] for each in columns]), allow_pickle=False)
 
 
 @contextmanager

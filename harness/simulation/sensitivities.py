@@ -37,11 +37,14 @@ from .recording import SampleBlock
 from .variation import TIME, Variation, seeds_of, size_of
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
-FOLLOWED, TOLERATED = 1e-6, 1e4  # relative, and in tolerances: how far the state beside X may be off the motion's
+DISTANCE, TOLERATED = (
+    1e-6,
+    1e4,
+)  # relative, and in tolerances: how far the state beside X may be off the motion's
 CONTINUOUS = 1e-9  # relative change of a state that is none
 
 
-class _Piece(NamedTuple):
+class _Segment(NamedTuple):
     """A part of the motion with its derivatives."""
 
     start: float
@@ -63,8 +66,8 @@ class _ModeVariation:
 
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
         self.mode, self.problem, self._directions = mode, mode.problem, directions
-        if self.problem.obstacle is not None:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=self.problem.obstacle)
+        if self.problem.obstruction is not None:
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=self.problem.obstruction)
         if closed := [name for name in directions if name not in (*self.problem.parameters, *self.problem.state)]:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"the equations are made for one value of {closed[0]}")
         self.constraints = ConstraintVariation(self.problem, directions)
@@ -102,7 +105,7 @@ class _ModeVariation:
         equations = list(zip(variables.values(), rates, strict=True))
         return heyoka.taylor_adaptive(equations, [0.0] * len(equations), **self._tolerance, **self._code.options)
 
-    def follow(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Piece:
+    def integrate(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Segment:
         """Integrate the derivatives through a part of the motion.
 
         `left` is the remaining time of the motion at the start of the part.
@@ -115,7 +118,7 @@ class _ModeVariation:
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are not finite beyond t = {start:.10g}")
-        piece = _Piece(start, end, self, between)
+        piece = _Segment(start, end, self, between)
         self._compile_if_worthwhile(steps * left / (end - start))
         return piece
 
@@ -130,9 +133,9 @@ class _ModeVariation:
         if not self.problem.multipliers:
             return moves
         here = self.mode.matrices.independent(t, state)
-        factors, kept = factored_constraints(here.mass, here.jacobian), list(self.problem.independent)
+        factors, independent = factored_constraints(here.mass, here.jacobian), list(self.problem.independent)
         for half in (0, 1):
-            missed = self.constraints(t, state, moves)[half][kept]
+            missed = self.constraints(t, state, moves)[half][independent]
             moves[half * n :][:n] += np.array([factors.correction(column) for column in missed.T]).T
         return moves
 
@@ -232,7 +235,7 @@ class Sensitivities:
         self._time, self._state = float(problem.start["t"]), None
         self._moves = initial_tangents(problem, begun.problem, self.directions)
         self._steps, self._reached, self._last = 0, self._time, None
-        self._pieces: list[_Piece] = []
+        self._pieces: list[_Segment] = []
 
     def take(self, step: Step) -> None:
         """Take a step of the motion. Integrate the derivatives block by block.
@@ -249,7 +252,7 @@ class Sensitivities:
             self._advance()
         if not self._steps:
             state = step.states(np.array([step.start]))[:, 0]
-            self._require_followed(state)
+            self._require_same_motion(state)
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
         if self._problem.signs or self._problem.released:
@@ -324,14 +327,14 @@ class Sensitivities:
         if not self._steps:
             return
         self._pieces.append(
-            self._here.follow(self._time, self._state, self._moves, self._reached, self._end - self._reached)
+            self._here.integrate(self._time, self._state, self._moves, self._reached, self._end - self._reached)
         )
         self._time, self._steps = self._reached, 0
         self._state, self._moves = self._here.reached(self._moves.shape)
 
-    def _require_followed(self, state: Numbers) -> None:
+    def _require_same_motion(self, state: Numbers) -> None:
         """Reject derivatives if their motion differs from the recorded one."""
-        allowed = max(FOLLOWED, TOLERATED * (self._tol or 0.0))
+        allowed = max(DISTANCE, TOLERATED * (self._tol or 0.0))
         if self._state is not None and self._nominal.share(state - self._state, state) > allowed:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
 

@@ -16,7 +16,7 @@ from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import drawing_with_values, with_values_in
 from ..supervisor import doing
-from .accuracy_check import energy_missed, expected, may_hide, violations
+from .accuracy_check import expected, may_hide, relative_energy_error, violations
 from .defect import DefectControl
 from .engines.engine import ESTIMATED_AFTER, Solutions, Step, require_reach
 from .engines.registry import engine_class
@@ -56,16 +56,16 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     Raises
     ------
     HolonomError
-        As `follow`.
+        As `integrate`.
     """
     parts: list[Sampled] = []
-    report = follow(problem, request, parts.append, progress)
+    report = integrate(problem, request, parts.append, progress)
     drawing = problem.drawing and drawing_with_values(problem)
     named = {"scene": problem.scene, "title": problem.title, "drawing": drawing}
     return Simulation(**named, report=report, **vars(joined(parts)))
 
 
-def follow(
+def integrate(
     problem: MotionProblem,
     request: SimulationRequest,
     take: TakeSamples,
@@ -222,7 +222,7 @@ class _Simulation:
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
         self.recording = Recording(self.begun, self._wanted_times(), zero, self._process)
-        self.exchange = EnergyStatistics()
+        self.energy_statistics = EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.sensitivities = (
             Sensitivities(self.motion.problem, request.sensitivities, self.begun, request.tol, float(self.end))
@@ -238,7 +238,7 @@ class _Simulation:
     def run(self, progress: Progress | None, watch: TakeStep | None) -> Report:
         begun, compiled = time.perf_counter(), self.motion.compile_seconds
         self.recording.begin(self.start, self.first)
-        self._follow(self._take(progress, watch))
+        self._integrate(self._take(progress, watch))
         self.recording.end(self.end, self.motion.state)
         seconds = time.perf_counter() - begun - (self.motion.compile_seconds - compiled)
         self.recording.flush()
@@ -256,7 +256,7 @@ class _Simulation:
             [largest(row, known) for row, known in zip(self.solutions.multipliers, self.reactions, strict=True)]
         )
         energies, self.controls = self._energies(block), self._controls(block)
-        self.exchange.add(energies["energy"], energies["energy_error"])
+        self.energy_statistics.add(energies["energy"], energies["energy_error"])
         self.take(
             Sampled(
                 times=block.times,
@@ -276,7 +276,7 @@ class _Simulation:
         rows = [known.get(name, none) for name in self.problem.multipliers]
         return solutions._replace(multipliers=np.array(rows).reshape(len(rows), len(none)))
 
-    def _follow(self, take: TakeStep | None) -> None:
+    def _integrate(self, take: TakeStep | None) -> None:
         if take is None:
             return self.motion.advance(self.end)
         for step in self.motion.integrate(self.end):
@@ -331,12 +331,12 @@ class _Simulation:
     def _motion(self, states: Numbers, solutions: Solutions) -> Mapping[str, Samples]:
         """Return samples of the quantities that the scene observes."""
         observe, names = self.problem.observe, self.problem.coordinates
-        followed = states if "trajectory" in observe else states[:0]
+        visited = states if "trajectory" in observe else states[:0]
         reactions = solutions.multipliers if "multipliers" in observe else solutions.multipliers[:0]
         forces = solutions.constraint_forces if "constraint_forces" in observe else solutions.constraint_forces[:0]
         return {
-            "coordinates": dict(zip(names, followed, strict=False)),
-            "velocities": dict(zip(self.problem.state[len(names) :], followed[len(names) :], strict=False)),
+            "coordinates": dict(zip(names, visited, strict=False)),
+            "velocities": dict(zip(self.problem.state[len(names) :], visited[len(names) :], strict=False)),
             "multipliers": dict(zip(self.problem.reactions, reactions, strict=False)),
             "constraint_forces": {f"Lambda[{s}]": row for s, row in enumerate(forces, start=1)},
         }
@@ -387,7 +387,7 @@ class _Simulation:
             velocities=dict(zip(self.problem.state[n:], state[n:], strict=True)),
             multipliers=dict(zip(observed, multipliers, strict=False)),
             residuals=left,
-            energy_error=self.exchange.last_error,
+            energy_error=self.energy_statistics.last_error,
             condition=condition(end.here.under(mode.problem.independent)),
             steps=self.motion.steps,
             segments=tuple(self.motion.segments),
@@ -410,7 +410,7 @@ class _Simulation:
             relative_degrees=self.problem.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),
-            violations=tuple(violations(self._missed(left, start, end), self.begun.engine.tol, self.motion.steps)),
+            violations=tuple(violations(self._errors(left, start, end), self.begun.engine.tol, self.motion.steps)),
         )
 
     def _undetermined(self, end: MotionState, mode: Mode) -> tuple[str, ...]:
@@ -422,19 +422,20 @@ class _Simulation:
         multipliers = as_floats(np.array([known[name] for name in mode.problem.multipliers]))
         return undetermined_outputs(mode.problem, end, as_floats(self.solutions.accelerations[:, -1]), multipliers)
 
-    def _missed(self, left: Mapping[str, float], start: MotionState, end: MotionState) -> Mapping[str, float]:
+    def _errors(self, left: Mapping[str, float], start: MotionState, end: MotionState) -> Mapping[str, float]:
         """Return the errors of the quantities that the tolerance limits.
 
         They are relative to the size of each quantity.
         """
         within = {} if self.steps is None else {"acceleration": self.steps.error}
-        kept = {name: left[name] for name in ("position", "velocity")}
+        errors = {name: left[name] for name in ("position", "velocity")}
         if not np.isfinite(self.reactions).all():
-            kept["multipliers"] = np.nan
+            errors["multipliers"] = np.nan
         ends = (start.here, start.state), (end.here, end.state)
-        exchanged = max(self.recording.largest_work, self.exchange.exchanged)
+        energy = self.energy_statistics
+        change = max(self.recording.largest_work, energy.largest_change)
         small = expected(self.begun.engine.tol, self.motion.steps) * self.motion.nominal.velocities
-        return {**kept, "energy": float(energy_missed(*ends, self.exchange.error, exchanged, small)), **within}
+        return {**errors, "energy": float(relative_energy_error(*ends, energy.error, change, small)), **within}
 
     def _cases(self, start: MotionState, end: MotionState) -> tuple[Difficulty, ...]:
         """Return the hard cases of the robust engine, then those of both ends, each once."""
@@ -469,7 +470,7 @@ class EnergyStatistics:
     """The largest change of the energy and its largest error, block by block."""
 
     def __init__(self) -> None:
-        self.exchanged = self.error = self.last_error = 0.0
+        self.largest_change = self.error = self.last_error = 0.0
         self._first: Any = None
 
     def add(self, energy: Numbers, error: Numbers) -> None:
@@ -484,6 +485,6 @@ class EnergyStatistics:
         """
         if self._first is None:
             self._first = energy[0]
-        self.exchanged = largest(energy - self._first, self.exchanged)
+        self.largest_change = largest(energy - self._first, self.largest_change)
         self.error = largest(error, self.error)
         self.last_error = float(error[-1])

@@ -99,11 +99,11 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
         Its inputs are ``t`` and those of the tables.
     """
     inputs = ("t", *(name for table in tables for name in table.inputs))
-    known, kept, used = set(inputs), [], {}
+    known, remaining, used = set(inputs), [], {}
     for name, expression in program.assignments:
         if (names := names_in(expression)) and names <= known:
             known.add(name)
-            kept.append((name, expression))
+            remaining.append((name, expression))
         else:
             used |= dict.fromkeys(largest_parts(expression, known))
     outputs = {name: value for name, value in program.outputs.items() if names_in(value) & known}
@@ -114,7 +114,7 @@ def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
     return replace(
         program,
         inputs=inputs,
-        assignments=(*kept, *named),
+        assignments=(*remaining, *named),
         outputs={name: Name(name) for name, _ in named},
     )
 

@@ -259,15 +259,15 @@ class _Node(NamedTuple):
         R = self.tangent.solve(np.zeros_like(self.here["A_rate"]), -rate)[0]
         return R - N @ (N.T @ self.here["A_rate"]) / 2
 
-    def is_free(self, nominal: Vector, kept: Sequence[int]) -> bool:
+    def is_free(self, nominal: Vector, independent: Sequence[int]) -> bool:
         """Return True if the multipliers vanish.
 
         They are small beside those that accelerations of nominal sizes need.
         """
         accelerations = np.maximum(np.abs(self.point.accelerations), nominal)
         forces = np.abs(self.here["equation_by_a"]) @ accelerations
-        sizes = self.tangent.sizes_of_multipliers(forces, np.zeros(len(kept)))
-        return bool(np.all(np.abs(self.point.multipliers[kept]) <= VANISHING * sizes))
+        sizes = self.tangent.sizes_of_multipliers(forces, np.zeros(len(independent)))
+        return bool(np.all(np.abs(self.point.multipliers[independent]) <= VANISHING * sizes))
 
     def reaction_deviations(self, linear: Linearization) -> tuple[Matrix, Matrix]:
         """Return the derivatives of the multipliers, and the sizes of their terms.
@@ -405,8 +405,8 @@ def _stability_of(monodromy: Matrix) -> Stability:
 def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown: slice) -> FreeDeviations | None:
     if not len(nodes.nodes[0].here["constraint"]):
         return None
-    accelerations, kept = nominal_of(problem).accelerations, list(problem.independent)
-    if not all(node.is_free(accelerations, kept) for node in nodes.nodes):
+    accelerations, independent = nominal_of(problem).accelerations, list(problem.independent)
+    if not all(node.is_free(accelerations, independent) for node in nodes.nodes):
         return None
     parts = [node.reaction_deviations(linear) for node, linear in zip(nodes.nodes, nodes.linear, strict=True)]
     rows = [np.where(np.abs(C) > VANISHING * terms, C, 0.0) for C, terms in parts]

@@ -237,7 +237,7 @@ class _Search:
     """Newton's method for r = 0, f = 0, in units of nominal sizes."""
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
-        self._problem, self._equations, self._kept = problem, equations, list(problem.independent)
+        self._problem, self._equations, self._independent = problem, equations, list(problem.independent)
         self._n = len(equations.coordinates)
         self._t, state = start_of(problem)
         self._first = state[: self._n]
@@ -259,8 +259,8 @@ class _Search:
 
         If the redundant constraints are not known, it is the rank at the start.
         """
-        if self._problem.obstacle is None:
-            return len(self._kept)
+        if self._problem.obstruction is None:
+            return len(self._independent)
         return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
 
     def turns(self, random: np.random.Generator) -> list[int]:
@@ -353,7 +353,7 @@ class _Search:
             for _ in range(ITERATIONS):
                 steps, size, unbalanced = self._newton(q[:, left], multipliers[:, left])
                 q[:, left] += steps[: self._n]
-                multipliers[np.ix_(self._kept, left)] += steps[self._n :]
+                multipliers[np.ix_(self._independent, left)] += steps[self._n :]
                 solved[left] = (size <= CONVERGED) & (unbalanced <= BALANCED)
                 left = left[~solved[left] & np.isfinite(size)]
                 if not left.size:
@@ -395,7 +395,7 @@ class _Search:
         return bool(np.all(np.abs(apart) <= SAME * sizes))
 
     def _at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
-        return self._equations.at(self._point(q, multipliers), self._kept)
+        return self._equations.at(self._point(q, multipliers), self._independent)
 
     def _point(self, q: Vector, multipliers: Vector) -> Point:
         zeros = np.zeros_like(q)

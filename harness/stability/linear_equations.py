@@ -97,14 +97,14 @@ class LinearEquations:
             raise HolonomError(ErrorKind.NO_LAW)
         return self._law([t])
 
-    def at(self, point: "Point", kept: Sequence[int]) -> Mapping[str, Matrix]:
+    def at(self, point: "Point", independent: Sequence[int]) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.
 
         Parameters
         ----------
         point : Point
             Or k of them, with a last axis more, which all results then have.
-        kept : sequence of int
+        independent : sequence of int
             The constraints that are looked at, g of them, counted from 0.
 
         Returns
@@ -125,9 +125,9 @@ class LinearEquations:
         values = self._evaluate([point.t, *np.concatenate(point[1:])])
         for (array, place), value in zip(self._places, values, strict=True):
             found[array][place] = value
-        found["output_by_multipliers"] = found["output_by_multipliers"][:, list(kept)]
+        found["output_by_multipliers"] = found["output_by_multipliers"][:, list(independent)]
         of_motion = ("equation", "A_rate", "output")
-        return {name: each if name.startswith(of_motion) else each[list(kept)] for name, each in found.items()}
+        return {name: each if name.startswith(of_motion) else each[list(independent)] for name, each in found.items()}
 
 
 class Point(NamedTuple):

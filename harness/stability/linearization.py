@@ -346,10 +346,10 @@ def tangent_at(
     HolonomError
         The constraints are singular there.
     """
-    kept = problem.independent
-    here = equations.at(point, kept)
+    independent = problem.independent
+    here = equations.at(point, independent)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
-    if tangent.rank < len(kept) and problem.obstacle is None:
+    if tangent.rank < len(independent) and problem.obstruction is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     return here, tangent
 
@@ -473,12 +473,12 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
     HolonomError
         A control has no law, or the mass matrix is singular along a free direction.
     """
-    n, kept, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
+    n, rows, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
-    here = equations.at(at_rest, kept)
+    here = equations.at(at_rest, rows)
     tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
     accelerations, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
-    multipliers[kept] = forces[:, 0]
+    multipliers[rows] = forces[:, 0]
     return at_rest._replace(accelerations=accelerations[:, 0])
 
 

@@ -35,14 +35,16 @@ UNDEFINED = object()  # the value of an expression that is not a polynomial
 ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
 
 
-def count_real_solutions(equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]) -> int | None:
+def count_real_solutions(
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
+) -> int | None:
     """Count the states at rest for constant controls.
 
     Parameters
     ----------
     equations : LinearEquations
         Of the scene.
-    kept : sequence of int
+    independent : sequence of int
         Indices of independent constraints, counted from 0; the multipliers of the others are zero.
     controls : sequence of float
         Constant values, in the order of the equations.
@@ -53,20 +55,23 @@ def count_real_solutions(equations: LinearEquations, kept: Sequence[int], contro
         Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles. None if the
         equations are not polynomial, or too large, or have infinitely many complex solutions.
     """
-    polynomials = _equations_at_rest(equations, kept, controls)
+    polynomials = _equations_at_rest(equations, independent, controls)
     if not polynomials or prod(max(map(sum, each.itermonoms())) for each in polynomials) > SOLUTIONS:
         return None
     return _count_real_zeros(groebner(polynomials, polynomials[0].ring))
 
 
 def _equations_at_rest(
-    equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
 ) -> list[PolyElement] | None:
     """Return the polynomials that vanish at rest, or None if one is not a polynomial."""
     rows = {f"equation[{k}]" for k in range(1, len(equations.coordinates) + 1)}
-    program = computing(equations.program, rows | {f"constraint[{beta + 1}]" for beta in kept})
+    program = computing(equations.program, rows | {f"constraint[{beta + 1}]" for beta in independent})
     angles = _angles(program, equations.coordinates)
-    plain = [*(name for name in equations.coordinates if name not in angles), *(equations.multipliers[k] for k in kept)]
+    plain = [
+        *(name for name in equations.coordinates if name not in angles),
+        *(equations.multipliers[k] for k in independent),
+    ]
     unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ANGLE.values())]
     if not 0 < len(unknowns) <= UNKNOWNS:
         return None

@@ -78,7 +78,7 @@ class BatchEngine:
     Parameters
     ----------
     problem : MotionProblem
-        With open parameters, without signs and obstacle.
+        With open parameters, without signs and obstruction.
     tol : float
         Tolerance of a step.
     projects : bool
@@ -136,7 +136,7 @@ class BatchEngine:
         if projects and problem.multipliers:
             self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
 
-    def follow(self, states: Floats, values: Floats, stops: Stops) -> BatchResult:
+    def integrate(self, states: Floats, values: Floats, stops: Stops) -> BatchResult:
         """Integrate motions from their initial states.
 
         Parameters
@@ -199,18 +199,18 @@ class BatchEngine:
             failing, batch = self._run(starts, pars, stops)
             if failing is None:
                 return batch
-        chosen, followed = np.arange(self._elements), np.ones(count, dtype=bool)
+        chosen, active = np.arange(self._elements), np.ones(count, dtype=bool)
         chosen[count:] = 0
         while True:
             failing, batch = self._run(starts[:, chosen], pars[:, chosen], _of(stops, chosen))
             if failing is None:
                 batch = batch.of(slice(count))
-                return batch._replace(well=followed & batch.well)
+                return batch._replace(well=active & batch.well)
             failed = np.unique(chosen[failing])
-            followed[failed] = False
-            if not followed.any():
+            active[failed] = False
+            if not active.any():
                 return self._nothing(len(stops), count)
-            chosen[np.isin(chosen, failed)] = np.flatnonzero(followed)[0]
+            chosen[np.isin(chosen, failed)] = np.flatnonzero(active)[0]
 
     def _run(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[NDArray[np.bool_] | None, _Batch | None]:
         """Integrate a full batch through all stops. Return failed elements or the result."""
@@ -272,7 +272,7 @@ class _StepRecorder:
 
     def __init__(self, integrator: Any, first: int) -> None:
         last = integrator.tc[first:], integrator.last_h, integrator.time  # views of what the last step leaves
-        self._last, self._kept = last, [np.empty((ROOM, *each.shape)) for each in last]
+        self._last, self._stored = last, [np.empty((ROOM, *each.shape)) for each in last]
         self._powers = np.arange(1, len(last[0][0]))[:, None, None] / SMALL
         self._taken = 0
 
@@ -283,16 +283,16 @@ class _StepRecorder:
     def __call__(self, integrator: Any) -> bool:
         """Record the polynomials, the length and the time of the last step."""
         taken = self._taken
-        if taken == len(self._kept[0]):
-            self._kept = [np.concatenate([each, np.empty_like(each)]) for each in self._kept]
-        series, length, time = self._kept
+        if taken == len(self._stored[0]):
+            self._stored = [np.concatenate([each, np.empty_like(each)]) for each in self._stored]
+        series, length, time = self._stored
         series[taken], length[taken], time[taken] = self._last
         self._taken = taken + 1
         return True
 
     def steps(self) -> list[Steps]:
         """Return each quantity along the elements."""
-        series, length, time = (each[: self._taken] for each in self._kept)
+        series, length, time = (each[: self._taken] for each in self._stored)
         rates = np.moveaxis(series[:, :, 1:], 0, 2)  # of the integrals: quantities, powers, steps, elements
         scales = np.concatenate([np.ones((1, *length.shape)), np.repeat(length[None], rates.shape[1] - 1, axis=0)])
         coefficients = rates * (self._powers * np.multiply.accumulate(scales))

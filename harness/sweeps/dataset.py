@@ -78,7 +78,7 @@ class SweepFolder:
         self.path, self.document = path, published(Publication.SWEEP, document)
 
     @contextmanager
-    def held(self, resume: bool) -> Iterator[None]:
+    def locked(self, resume: bool) -> Iterator[None]:
         """Lock the folder while the block runs.
 
         Parameters
@@ -96,7 +96,7 @@ class SweepFolder:
             There is another sweep or something else in the folder, another command is at work there, or there is
             nothing to resume.
         """
-        self._require_ours(resume)
+        self._require_own(resume)
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             lock = os.open(self.path / LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o644)
@@ -104,7 +104,7 @@ class SweepFolder:
             raise HolonomError(ErrorKind.UNWRITABLE, self.path, error.strerror or str(error)) from None
         try:
             _lock(lock, self.path)
-            self._require_ours(resume)
+            self._require_own(resume)
             for left in self.path.glob(DRAFTS):  # of a command that was killed
                 left.unlink(missing_ok=True)
             if not (self.path / DOCUMENT).exists():
@@ -163,7 +163,7 @@ class SweepFolder:
                     listed[str(entry["part"])] = entry
         return listed
 
-    def _require_ours(self, resume: bool) -> None:
+    def _require_own(self, resume: bool) -> None:
         if not (self.path / DOCUMENT).exists():
             if self.path.exists() and (not self.path.is_dir() or set(os.listdir(self.path)) - {LOCK}):
                 raise HolonomError(ErrorKind.UNRELATED_FOLDER, self.path)

@@ -89,7 +89,7 @@ def read_quantities(texts: Iterable[str]) -> tuple[OutputQuantity, ...]:
         One of them cannot be kept.
     """
     items = [item for text in texts for item in items_of(text)]
-    return tuple(dict.fromkeys(_kept(item) for item in items))
+    return tuple(dict.fromkeys(_quantity(item) for item in items))
 
 
 def items_of(text: str) -> Iterator[str]:
@@ -114,7 +114,7 @@ def items_of(text: str) -> Iterator[str]:
     yield text[begin:]
 
 
-def _kept(item: str) -> OutputQuantity:
+def _quantity(item: str) -> OutputQuantity:
     text = "".join(item.split())
     if text in WHOLE:
         return OutputQuantity(text, WHOLE[text])
@@ -126,7 +126,7 @@ def _kept(item: str) -> OutputQuantity:
         case ast.Call(ast.Name("d"), [quantity, direction], []):
             what, by = (_expression(each, text) for each in (quantity, direction))
             if not isinstance(what, Name) or not isinstance(by, Name):
-                raise _refusal(text, "is not a derivative of one quantity by one parameter or initial value")
+                raise _error(text, "is not a derivative of one quantity by one parameter or initial value")
             return OutputQuantity(text, Kind.DERIVATIVE, what, direction=by.text)
         case ast.Call(ast.Name("at"), [quantity, _], []):
             inside, _, time = text[len("at(") : -1].rpartition(",")
@@ -141,12 +141,12 @@ def _tree(text: str) -> ast.expr:
             raise ValueError
         return ast.parse(text.replace("^", "**"), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _refusal(text or "nothing", "is not an expression") from None
+        raise _error(text or "nothing", "is not an expression") from None
 
 
 def _analytic(tree: ast.expr, text: str) -> Expression:
     if any(isinstance(node, ast.Name) and node.id == "abs" for node in ast.walk(tree)):
-        raise _refusal(text, "holds abs inside of what is followed along the motion; only max(abs(...)) may")
+        raise _error(text, "holds abs inside of what is followed along the motion; only max(abs(...)) may")
     return _expression(tree, text)
 
 
@@ -169,7 +169,7 @@ def _expression(tree: ast.expr, text: str) -> Expression:
         case ast.Constant(int(value) | float(value)) if _is_number(value):
             return Fraction(repr(value))
         case _:
-            raise _refusal(text, "is made of something else than numbers, + - * / ^, functions and quantities")
+            raise _error(text, "is made of something else than numbers, + - * / ^, functions and quantities")
 
 
 def _is_number(value: int | float) -> bool:
@@ -178,12 +178,12 @@ def _is_number(value: int | float) -> bool:
 
 def _time(written: str, text: str) -> Fraction:
     if not re.fullmatch(r"-?\d+(\.\d*)?(/\d+)?", written) or not within_reach(written):
-        raise _refusal(text, "names no time")
+        raise _error(text, "names no time")
     try:
         return Fraction(written)
     except ZeroDivisionError:
-        raise _refusal(text, "names no time") from None
+        raise _error(text, "names no time") from None
 
 
-def _refusal(text: str, reason: str) -> HolonomError:
+def _error(text: str, reason: str) -> HolonomError:
     return HolonomError(ErrorKind.NOT_KEPT, detail=f"{text[:60]} {reason}")

@@ -20,7 +20,7 @@ class SweepRequest:
     """The request of a sweep."""
 
     axes: "Axes"
-    kept: "tuple[OutputQuantity, ...]"
+    outputs: "tuple[OutputQuantity, ...]"
     tol: float = option(TOLERANCE, "Tolerance of a step.")
     until: Fraction | None = option(None, "Final time. Default: that of the scene.", metavar="T")
     stabilization: Stabilization = option(

@@ -20,7 +20,7 @@ from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, computing, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_in, names_in
 from ..program.precision import read_precision
-from ..simulation.accuracy_check import MARGIN, energy_missed, expected, may_hide, trusted
+from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
@@ -42,7 +42,7 @@ from .time_watch import TimeWatch
 if TYPE_CHECKING:
     import pyarrow
 
-KINKED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
+CORNERED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
 GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep
@@ -54,8 +54,8 @@ class Status(StrEnum):
     """The status of a row."""
 
     OK = "ok"
-    UNDEFINED = "undefined"  # something that is kept has no finite value
-    DOUBTFUL = "doubtful"  # what it misses is out of proportion to the tolerance
+    UNDEFINED = "undefined"  # an output has no finite value
+    INACCURATE = "inaccurate"  # the errors are too large for the tolerance
     NO_START = "no start"
     BROKEN_OFF = "broken off"
 
@@ -66,7 +66,7 @@ class Plan:
 
     problem: MotionProblem  # its open parameters are those that vary
     axes: Axes
-    kept: tuple[OutputQuantity, ...]
+    outputs: tuple[OutputQuantity, ...]
     tol: float = TOLERANCE  # tolerance of a step
     until: Fraction | None = None  # the last time; None for the end of the scene's time span
     stabilization: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
@@ -79,27 +79,27 @@ class RowMaker:
     Raises
     ------
     HolonomError
-        The start does not follow the parameters, the motion has no end, or something kept is not known of it.
+        The start does not follow the parameters, the motion has no end, or an output is unknown.
     """
 
     def __init__(self, plan: Plan) -> None:
         problem = self._problem = plan.problem
         self.plan = plan
-        require_known(problem, [kept.quantity for kept in plan.kept if kept.quantity is not None])
-        _require_smooth(problem, plan.kept)
+        require_known(problem, [output.quantity for output in plan.outputs if output.quantity is not None])
+        _require_smooth(problem, plan.outputs)
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
-        self._derivatives = [kept for kept in plan.kept if kept.kind is Kind.DERIVATIVE]
+        self._derivatives = [output for output in plan.outputs if output.kind is Kind.DERIVATIVE]
         _require_directions(problem, self._derivatives)
-        if problem.released or any(kept.kind is Kind.RADIUS for kept in plan.kept):
+        if problem.released or any(output.kind is Kind.RADIUS for output in plan.outputs):
             require_analytic(problem)
-        self._moves = any(kept.kind is not Kind.RADIUS for kept in plan.kept)
+        self._moves = any(output.kind is not Kind.RADIUS for output in plan.outputs)
         self._end = float(last_time(problem, plan.until, read_precision("double"))) if self._moves else self._start
-        self._asked = sorted({self._end, *(self._time(kept) for kept in plan.kept if kept.kind is Kind.AT)})
-        self._points = [kept.quantity for kept in plan.kept if kept.kind is Kind.AT]
-        self._looks = [kept for kept in plan.kept if kept.kind in ALONG]
-        free = any(kept.kind is Kind.FREE for kept in plan.kept)
+        self._asked = sorted({self._end, *(self._time(output) for output in plan.outputs if output.kind is Kind.AT)})
+        self._points = [output.quantity for output in plan.outputs if output.kind is Kind.AT]
+        self._looks = [output for output in plan.outputs if output.kind in ALONG]
+        free = any(output.kind is Kind.FREE for output in plan.outputs)
         self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
-        self._along: list[Expression] = [*(kept.quantity for kept in self._looks), *self._free[0], *self._free[1]]
+        self._along: list[Expression] = [*(output.quantity for output in self._looks), *self._free[0], *self._free[1]]
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
@@ -109,7 +109,7 @@ class RowMaker:
     @property
     def columns(self) -> tuple[str, ...]:
         """Names of the output columns, in order."""
-        names = [self._problem.state if kept.kind is Kind.FINAL else (kept.text,) for kept in self.plan.kept]
+        names = [self._problem.state if output.kind is Kind.FINAL else (output.text,) for output in self.plan.outputs]
         return tuple(dict.fromkeys(name for group in names for name in group if name != Kind.RESIDUAL))
 
     def table(self, first: int, last: int) -> "pyarrow.Table":
@@ -138,10 +138,10 @@ class RowMaker:
             self._fill(rows)
         arrays = {"row": pa.array(np.arange(first, last))}
         arrays |= {name: pa.array(x) for name, x in zip(self.plan.axes.names, rows.values, strict=True)}
-        columns = {**rows.kept, "residual": rows.residual}
+        columns = {**rows.columns, "residual": rows.residual}
         for name, column in columns.items():
             missing = np.isnan(column)
-            is_truth = any(kept.text == name and kept.kind is Kind.FREE for kept in self.plan.kept)
+            is_truth = any(output.text == name and output.kind is Kind.FREE for output in self.plan.outputs)
             arrays[name] = pa.array(column == 1 if is_truth else column, mask=missing)
         arrays["status"] = pa.array(list(map(str, Status))).take(pa.array(rows.statuses))
         arrays["note"] = pa.array(rows.notes, pa.string())
@@ -153,9 +153,9 @@ class RowMaker:
         starts = self._starts(rows.values)
         rows.mark(~starts.found, Status.NO_START, "no state was found that satisfies the constraints at the start")
         there = np.flatnonzero(starts.found)
-        if len(there) and any(kept.kind is Kind.RADIUS for kept in self.plan.kept):
-            name = next(kept.text for kept in self.plan.kept if kept.kind is Kind.RADIUS)
-            rows.kept[name][there] = batch_radii(self._problem, starts.states[:, there], rows.values[:, there])
+        if len(there) and any(output.kind is Kind.RADIUS for output in self.plan.outputs):
+            name = next(output.text for output in self.plan.outputs if output.kind is Kind.RADIUS)
+            rows.columns[name][there] = batch_radii(self._problem, starts.states[:, there], rows.values[:, there])
         if not self._moves:
             states = starts.states[:, there]
             at = self._batch_matrices(self._start, states, rows.values[:, there])
@@ -181,8 +181,8 @@ class RowMaker:
     def _batched(self) -> bool:
         """True if the batch engine can integrate motions of the problem."""
         problem = self._problem
-        ends_smoothly = problem.events is None or not _has_kinks(problem.events)
-        alone = problem.switching or problem.tables or problem.obstacle is not None or controls_may_fail(problem)
+        ends_smoothly = problem.events is None or not _has_corners(problem.events)
+        alone = problem.switching or problem.tables or problem.obstruction is not None or controls_may_fail(problem)
         return ends_smoothly and not alone and not self._hides and not self._derivatives
 
     def _together(self, rows: "_Rows", there: NDArray, states: Floats, stops: Sequence[float]) -> NDArray:
@@ -198,11 +198,11 @@ class RowMaker:
         ends, ended = self._ends(states, values)
         times = sorted({*self._asked, *(t for t in stops if t < self._end)})
         stops = [np.minimum(time, ends) for time in times] if self._problem.until else times
-        found = self._engine.follow(states, values, stops)
+        found = self._engine.integrate(states, values, stops)
         end = self._batch_matrices(ends, found.states[-1], values), found.states[-1]
         stopped = expected(self.plan.tol, found.steps) * nominal.velocities
         left = constraint_residuals(*end, nominal)
-        energy = energy_missed(start, end, found.energy_error, found.exchanged, stopped)
+        energy = relative_energy_error(start, end, found.energy_error, found.exchanged, stopped)
         residual = np.maximum(left["position"], left["velocity"])
         well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)
         done = there[well]
@@ -218,7 +218,7 @@ class RowMaker:
         k = states.shape[1]
         if not self._problem.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
-        found = self._ending_engine.follow(states, values, [self._end])
+        found = self._ending_engine.integrate(states, values, [self._end])
         return np.fmin(self._end, np.fmin.reduce(found.seen)), found.arrived
 
     def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
@@ -226,7 +226,7 @@ class RowMaker:
         if self._derivatives:
             problem = replace(problem, observe=(*problem.observe, "trajectory", "multipliers"))
         try:
-            found = self._singles.follow(problem, self._asked)
+            found = self._singles.integrate(problem, self._asked)
         except HolonomError as error:
             rows.mark(np.array([row]), Status.BROKEN_OFF, error.reason)
             return
@@ -235,36 +235,36 @@ class RowMaker:
         if report.unresolved is not None:
             rows.mark(here, Status.OK, unresolved(report.unresolved))
         if report.violations:
-            rows.mark(here, Status.DOUBTFUL, "; ".join(violation.reason for violation in report.violations))
+            rows.mark(here, Status.INACCURATE, "; ".join(violation.reason for violation in report.violations))
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, np.array([report.t]), found.state[:, None], points)
         self._keep_along(rows, here, self._seen(found.steps))
-        for kept in self._derivatives:
-            number = report.sensitivities[derivative_name(kept.quantity.text, kept.direction)]
-            rows.keep(kept.text, here, np.array([number]), there_is=True)
+        for output in self._derivatives:
+            number = report.sensitivities[derivative_name(output.quantity.text, output.direction)]
+            rows.record(output.text, here, np.array([number]), there_is=True)
 
-    # ---- what is kept ----
+    # ---- recorded outputs ----
 
     def _keep(
         self, rows: "_Rows", there: NDArray, ends: Floats, states: Floats, points: Mapping[float, Floats]
     ) -> None:
         """Keep numbers at the ends, shape (k,), and at times that are not after them."""
         place = 0
-        for kept in self.plan.kept:
-            if kept.kind is Kind.FINAL:
+        for output in self.plan.outputs:
+            if output.kind is Kind.FINAL:
                 for name, numbers in zip(self._problem.state, states, strict=True):
-                    rows.kept[name][there] = numbers
-            elif kept.kind is Kind.AT:
-                reached = kept.time is None or float(kept.time) <= ends
-                rows.keep(kept.text, there, points[self._time(kept)][place], there_is=reached)
+                    rows.columns[name][there] = numbers
+            elif output.kind is Kind.AT:
+                reached = output.time is None or float(output.time) <= ends
+                rows.record(output.text, there, points[self._time(output)][place], there_is=reached)
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
         """Keep numbers of quantities along the motion, shape (numbers, k)."""
-        for kept, numbers in zip(self._looks, seen, strict=False):
-            rows.keep(kept.text, there, numbers, there_is=(kept.kind is not Kind.ZERO) | ~np.isnan(numbers))
+        for output, numbers in zip(self._looks, seen, strict=False):
+            rows.record(output.text, there, numbers, there_is=(output.kind is not Kind.ZERO) | ~np.isnan(numbers))
         if any(self._free):
-            rows.kept[str(Kind.FREE)][there] = seen[-1]
+            rows.columns[str(Kind.FREE)][there] = seen[-1]
 
     def _seen(self, steps: list[Steps]) -> Floats:
         """Return the numbers made of quantities along motions, shape (numbers, elements).
@@ -272,7 +272,7 @@ class RowMaker:
         The last says whether they are free.
         """
         looks, fields = steps[: len(self._looks)], steps[len(self._looks) :]
-        made = [self._made(kept.kind, along) for kept, along in zip(self._looks, looks, strict=True)]
+        made = [self._made(output.kind, along) for output, along in zip(self._looks, looks, strict=True)]
         if fields:
             sizes = [largest_size(along) for along in fields]
             reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
@@ -294,7 +294,7 @@ class RowMaker:
             case _:
                 return _mean(along)
 
-    def _time(self, kept: OutputQuantity) -> float:
+    def _time(self, output: OutputQuantity) -> float:
         """Return the time at which to evaluate a quantity.
 
         Raises
@@ -302,10 +302,12 @@ class RowMaker:
         HolonomError
             The motion does not reach there.
         """
-        time = self._end if kept.time is None else float(kept.time)
+        time = self._end if output.time is None else float(output.time)
         if not self._start <= time <= self._end:
             span = f"{self._start:.10g} to {self._end:.10g}"
-            raise HolonomError(ErrorKind.NOT_KEPT, detail=f"{kept.text} asks for a time outside of the motion, {span}")
+            raise HolonomError(
+                ErrorKind.NOT_KEPT, detail=f"{output.text} asks for a time outside of the motion, {span}"
+            )
         return time
 
     def _at(self, times: Floats, states: Floats, values: Floats) -> Floats:
@@ -358,7 +360,7 @@ class RowMaker:
 
     @cached_property
     def _singles(self) -> SingleMotions:
-        directions = tuple(dict.fromkeys(kept.direction for kept in self._derivatives))
+        directions = tuple(dict.fromkeys(output.direction for output in self._derivatives))
         request = SimulationRequest(
             tol=self.plan.tol, stabilization=self.plan.stabilization, until=self.plan.until, sensitivities=directions
         )
@@ -369,13 +371,13 @@ class RowMaker:
         return TimeWatch(self._problem, self._end)
 
 
-def _require_smooth(problem: MotionProblem, kept: Sequence[OutputQuantity]) -> None:
+def _require_smooth(problem: MotionProblem, recorded: Sequence[OutputQuantity]) -> None:
     """Reject outputs along the motion that polynomials of steps do not represent."""
-    for each in kept:
+    for each in recorded:
         if each.kind not in ALONG or problem.outputs is None:
             continue
         for name in sorted(names_in(each.quantity) & set(problem.outputs.outputs)):
-            if _has_kinks(computing(problem.outputs, {name})):
+            if _has_corners(computing(problem.outputs, {name})):
                 raise HolonomError(
                     ErrorKind.NOT_KEPT,
                     detail=f"{each.text} contains {name}, which has a corner and can be recorded at times only",
@@ -388,24 +390,24 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuan
     State, multipliers and outputs have derivatives. Parameters and state are directions.
     """
     outputs = () if problem.outputs is None else problem.outputs.outputs
-    for kept in derivatives:
+    for output in derivatives:
         for name, known in (
-            (kept.quantity.text, (*problem.state, *problem.reactions, *outputs)),
-            (kept.direction, (*problem.parameters, *problem.state)),
+            (output.quantity.text, (*problem.state, *problem.reactions, *outputs)),
+            (output.direction, (*problem.parameters, *problem.state)),
         ):
             if name not in known:
                 raise HolonomError(
-                    ErrorKind.NOT_KEPT, detail=f"{kept.text} contains {name}: expected one of {', '.join(known)}"
+                    ErrorKind.NOT_KEPT, detail=f"{output.text} contains {name}: expected one of {', '.join(known)}"
                 )
 
 
-def _has_kinks(program: Program) -> bool:
+def _has_corners(program: Program) -> bool:
     """Return True if a program is not analytic at a sign or at a branch cut.
 
     Polynomials of steps represent one side of it.
     """
     expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
-    return any(call.operation in KINKED for expression in expressions for call in calls_in(expression))
+    return any(call.operation in CORNERED for expression in expressions for call in calls_in(expression))
 
 
 class _Rows:
@@ -418,14 +420,14 @@ class _Rows:
 
     def __init__(self, values: Floats, columns: tuple[str, ...]) -> None:
         self.values, k = values, values.shape[1]
-        self.kept = {name: np.full(k, np.nan) for name in columns}
+        self.columns = {name: np.full(k, np.nan) for name in columns}
         self.residual = np.full(k, np.nan)
         self.statuses, self.notes = np.zeros(k, dtype=np.int8), np.full(k, None, dtype=object)
 
-    def keep(self, name: str, rows: NDArray, numbers: Floats, there_is: bool | NDArray[np.bool_]) -> None:
+    def record(self, name: str, rows: NDArray, numbers: Floats, there_is: bool | NDArray[np.bool_]) -> None:
         """Record finite values of an output, and mark rows that lack one."""
         finite = np.isfinite(numbers)
-        self.kept[name][rows] = np.where(finite & there_is, numbers, np.nan)
+        self.columns[name][rows] = np.where(finite & there_is, numbers, np.nan)
         self.mark(rows[~finite & there_is], Status.UNDEFINED, f"{name} has no finite value")
 
     def mark(self, rows: NDArray, status: Status, note: str) -> None:

@@ -14,7 +14,7 @@ from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_docum
 from ..program.precision import read_precision
 from ..program.request import Request
 from ..sandbox import Limits
-from ..simulation.engines.taylor import held
+from ..simulation.engines.taylor import checked_tolerance
 from ..source import Source, source_of
 from .axes import Axes, Grid, Listed, Sample
 from .dataset import SweepFolder, chunks_of
@@ -137,15 +137,15 @@ def run_sweep(
         The request cannot be met, or the folder holds something else, or as `holonom.program.motion_problem`.
     """
     require_address(wanted.scheduler)
-    held(wanted.tol, read_precision("double"))
+    checked_tolerance(wanted.tol, read_precision("double"))
     source = source_of(file, limits)
     text = _derived(source, request, wanted.axes)
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
-    plan = Plan(problem, wanted.axes, wanted.kept, wanted.tol, wanted.until, wanted.stabilization)
+    plan = Plan(problem, wanted.axes, wanted.outputs, wanted.tol, wanted.until, wanted.stabilization)
     maker = RowMaker(plan)  # refuses what cannot be computed before there is a folder
     target = SweepFolder(folder, _document(source.file, request, wanted, text, maker))
-    with target.held(wanted.resume):
+    with target.locked(wanted.resume):
         absent, altered = target.missing()
         chunks = sorted([*absent, *altered], key=lambda chunk: chunk.index)
         done = wanted.axes.rows - sum(chunk.last - chunk.first for chunk in chunks)
@@ -204,7 +204,7 @@ def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, 
         "seed": axes.seed if axes.samples else None,
         "rows": axes.rows,
         "chunk": wanted.chunk,
-        "keep": [kept.text for kept in wanted.kept],
+        "keep": [output.text for output in wanted.outputs],
         "columns": ["row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "note"],
         "options": {
             "tol": wanted.tol,

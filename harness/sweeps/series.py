@@ -31,7 +31,7 @@ def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Float
     Parameters
     ----------
     problem : MotionProblem
-        With open parameters, without signs and obstacle.
+        With open parameters, without signs and obstruction.
     states : ndarray, shape (2n, k)
         Initial coordinates and velocities.
     values : ndarray, shape (p, k)
@@ -82,7 +82,7 @@ def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     Parameters
     ----------
     problem : MotionProblem
-        With open parameters, without signs and obstacle.
+        With open parameters, without signs and obstruction.
     states : ndarray, shape (2n, k)
         Initial coordinates and velocities.
     values : ndarray, shape (p, k)

@@ -20,7 +20,7 @@ from ..simulation.evaluation import in_full_vectors
 from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
-from ..simulation.simulate import follow
+from ..simulation.simulate import integrate
 from .extremes import Steps
 from .quantities import expressions_of, observed_names, solved_names
 
@@ -60,7 +60,7 @@ class SingleMotions:
         quantities = expressions_of([*along, *points], known) if along or points else []
         self._quantities = in_full_vectors(heyoka.cfunc(quantities, vars=inputs, opt_level=0)) if quantities else None
 
-    def follow(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
+    def integrate(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
         """Integrate one motion.
 
         Parameters
@@ -80,7 +80,7 @@ class SingleMotions:
             The motion cannot be continued to the end.
         """
         look = _Look(partial(self._values, problem), self._along, stops)
-        report = follow(problem, self._request, lambda samples: None, watch=look.take)
+        report = integrate(problem, self._request, lambda samples: None, watch=look.take)
         return look.motion(report)
 
     def _values(self, problem: MotionProblem, mode: Mode, times: Floats, states: Floats) -> Floats:

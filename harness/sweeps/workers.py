@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 
 AHEAD = 3  # tasks that wait at each worker
 TOGETHER = 4  # chunks of a task at most: to hand one out and to fetch it takes a tenth of what a quick chunk takes
-KEPT_MEMORY = (
+ALLOCATOR_TRIM = (
     2**29
 )  # bytes that a worker does not give back at once; Dask's 64 KiB are given back and fetched each step
-LARGEST_PIECE = 2**25  # bytes of the largest piece of what is kept
+LARGEST_BLOCK = 2**25  # bytes of the largest piece of what is kept
 STARTS = 3  # attempts to start workers
 ADDRESS = re.compile(r"((tcp|tls|ws|wss)://)?([\w.-]+|\[[\da-fA-F:.]+\]):(?P<port>\d{1,5})", re.ASCII)
 PORTS = range(1, 2**16)
@@ -166,8 +166,8 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
         "distributed.comm.timeouts.connect": PATIENCE,
         "distributed.admin.system-monitor.gil.enabled": False,
         "distributed.worker.profile.enabled": False,  # which looks at each worker a hundred times a second
-        "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": KEPT_MEMORY,
-        "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": LARGEST_PIECE,
+        "distributed.nanny.pre-spawn-environ.MALLOC_TRIM_THRESHOLD_": ALLOCATOR_TRIM,
+        "distributed.nanny.pre-spawn-environ.MALLOC_MMAP_THRESHOLD_": LARGEST_BLOCK,
     }
     with (
         dask.config.set(settings),

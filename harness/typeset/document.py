@@ -12,7 +12,7 @@ from ..mathjson import from_sympy
 from ..record import Derivation, Equation, Record, Relation, Scene, System
 from .equations import blocks
 from .latex import latex
-from .quantities import letter_box, spelled_out
+from .quantities import spelled_out, symbol_box
 
 WIDTH = 70  # digits of the article's typeface beside the number of an equation
 PREAMBLE = r"""% Written by Holonom
@@ -92,7 +92,7 @@ def _character(sign: str) -> str:
     if sign in SPECIAL or sign < LAST_LATIN or sign in PUNCTUATION:
         return SPECIAL.get(sign, sign)
     letter = spelled_out(sign)
-    return f"({unicodedata.name(sign, 'character').lower()})" if letter == sign else f"${letter_box(letter).latex}$"
+    return f"({unicodedata.name(sign, 'character').lower()})" if letter == sign else f"${symbol_box(letter).latex}$"
 
 
 # ---- sections -------------------------------------------------------------------------------------
@@ -109,7 +109,7 @@ def _description(system: System) -> str:
     return _section(
         "The system",
         [
-            *(_inline(what, map(_letter, letters)) for what, letters in names if letters),
+            *(_inline(what, map(_symbol, letters)) for what, letters in names if letters),
             *(
                 _named(_heading(what, part.effect), [Relation(letter, from_sympy(part.value))])
                 for what, letter, parts in energies
@@ -184,8 +184,8 @@ def _components(letter: str, values: Sequence[Expr]) -> list[Relation]:
 
 
 def _equalities(values: Mapping[str, Expr]) -> list[str]:
-    return [f"{_letter(name)} = {latex(value)}" for name, value in values.items()]
+    return [f"{_symbol(name)} = {latex(value)}" for name, value in values.items()]
 
 
-def _letter(name: str) -> str:
+def _symbol(name: str) -> str:
     return latex(Symbol(name, real=True))

@@ -13,7 +13,7 @@ from ..record import Equation, Relation
 from .boxes import EQUALS, Box, aligned
 from .formula import formula_box, is_long, relation_lines, relation_rows
 from .presentation import presented
-from .quantities import letter_box
+from .quantities import symbol_box
 
 COLUMN_GAP = 2  # digits
 
@@ -85,7 +85,7 @@ def _array_rows(name: str, entries: Sequence[Relation], width: float) -> list[st
     """Return the entries in brackets if they are short, else listed without zeros."""
     whole = _has_all_indices(entries)
     if whole and _suits_brackets(entries) and (matrix := _matrix(entries)).width <= width:
-        letter = "A^{-1}" if name == "A_inverse" else letter_box(name).latex
+        letter = "A^{-1}" if name == "A_inverse" else symbol_box(name).latex
         return [f"{letter} &= {matrix.latex}"]
     present = [entry for entry in entries if entry.right != 0]
     if whole and len(present) in (0, len(entries)):

@@ -203,7 +203,7 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
     """
     rows: list[Box] = []
     for place, term in enumerate(signed_terms(tree)):
-        rows = _followed_by(rows, _term_lines(term, place, room), room)
+        rows = _appended(rows, _term_lines(term, place, room), room)
     return rows
 
 
@@ -303,11 +303,11 @@ def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
     """Return lines of boxes side by side, each as full as the room allows."""
     rows: list[Box] = []
     for box in boxes:
-        rows = _followed_by(rows, [box], room)
+        rows = _appended(rows, [box], room)
     return rows
 
 
-def _followed_by(rows: list[Box], more: list[Box], room: float) -> list[Box]:
+def _appended(rows: list[Box], more: list[Box], room: float) -> list[Box]:
     """Append lines to lines.
 
     A single line joins the last one if there is room.

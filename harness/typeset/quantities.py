@@ -56,26 +56,26 @@ def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
     Box
     """
     if name == "A_inverse":
-        return above(letter_box("A"), beside(*indices))
+        return above(symbol_box("A"), beside(*indices))
     if name == "christoffel":
         return _christoffel(*indices)
     if name == "delta" and len(indices) == 2:
-        return below(above(letter_box("delta"), indices[0]), indices[1])
+        return below(above(symbol_box("delta"), indices[0]), indices[1])
     if rate := RATE.fullmatch(name):
         return indexed_box(rate[2] + rate[3], indices, dots + len(rate[1]))
     stem, *parts = [part for part in name.replace("%", "").split("_") if part] or [UNDERSCORE]
-    letter, number = _letter_and_number(stem)
+    letter, number = _symbol_and_number(stem)
     own = [digits(number)] if number else []
     together = [beside(*indices)] if indices else []
-    return _with_indices(dotted(letter_box(letter), dots), [*together, *own, *map(_index, parts)])
+    return _with_indices(dotted(symbol_box(letter), dots), [*together, *own, *map(_index, parts)])
 
 
-def _letter_and_number(stem: str) -> tuple[str, str]:
+def _symbol_and_number(stem: str) -> tuple[str, str]:
     found = NUMBERED.fullmatch(stem)
     return (found[1], found[2]) if found else (stem, "")
 
 
-def letter_box(letter: str) -> Box:
+def symbol_box(letter: str) -> Box:
     """Return a box of a Latin or Greek letter, or of a word.
 
     Parameters

@@ -262,7 +262,7 @@
          (value (errset (simplifya call nil))))
     (if (or (null value)
             (and (member operator '(mabs %signum)) (eql (derivative (car arguments) 0) 0)))
-        (obstacle '$singular call assignment))
+        (obstruction '$singular call assignment))
     (number-at-start (car value) assignment)))
 
 (defun maxima-value (number) (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
@@ -276,24 +276,24 @@
     (cond ((rationalp (rational-of value)) (rational-of value))
           ((bigfloatp value)
            (if (< (- (third value) (car (last (car value)))) *smallest-power*) 0 (rational-of-bigfloat value)))
-          (t (obstacle (if *binary-digits* '$not_real '$irrational) e assignment)))))
+          (t (obstruction (if *binary-digits* '$not_real '$irrational) e assignment)))))
 
 (defun require-nonzero (value assignment)
-  (if (eql value 0) (obstacle '$singular "a division by zero" assignment)))
+  (if (eql value 0) (obstruction '$singular "a division by zero" assignment)))
 
-(defun obstacle (kind e assignment)
+(defun obstruction (kind e assignment)
   "Ends the expansion: what is in its way, the text of it, the assignment it was met in."
-  (throw 'obstacle (list '($series_obstacle) kind ($sconcat e) assignment)))
+  (throw 'obstruction (list '($series_obstruction) kind ($sconcat e) assignment)))
 
 ;;; ---- expansion ---------------------------------------------------------------------------
 
 (defun $expand_series (machine start order digits)
   "Coefficients of orders 0 ... order of the machine's outputs: a list of [name, coefficients],
-   or series_obstacle(kind, text, name). start: the values [name = value] at t0; digits:
+   or series_obstruction(kind, text, name). start: the values [name = value] at t0; digits:
    binary ones, or false for exact numbers. All numbers are returned as integers and fractions."
   (let ((*machine* machine) (*binary-digits* digits) (*defining* nil) (*scale* 1)
         (*start* (make-hash-table)))
-    (catch 'obstacle
+    (catch 'obstruction
       (dolist (e (cdr start)) (setf (gethash (second e) *start*) (number-at-start (third e) (second e))))
       (if (null digits) (setq *scale* (suitable-scale)))
       (run-machine order)

@@ -19,7 +19,7 @@ from scipy.integrate._ivp import dop853_coefficients as dop853
 from simulation_algebra import DESCRIPTIONS
 from simulation_motions import Motion
 
-from holonom.benchmark.work_precision.solvers import SOLVERS, CompiledRates, Solver
+from holonom.benchmark.work_precision.solvers import SOLVERS, RightHandSide, Solver
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem
 
@@ -102,7 +102,7 @@ def python_integrator(solver: Solver, motion: Motion, problem: MotionProblem) ->
     coordinates = len(problem.coordinates)
     accelerations = library_by_hand(motion, problem).accelerations
     accelerations.restype = None
-    right_hand_side = CompiledRates(accelerations, coordinates, 2 * coordinates + 1)
+    right_hand_side = RightHandSide(accelerations, coordinates, 2 * coordinates + 1)
     start, span = start_of(problem), span_of(motion, problem)
     return lambda tolerance: partial(solver, right_hand_side, span, start, tolerance)
 
@@ -180,7 +180,7 @@ def _ldl_solved(matrix: object, side: object) -> object:
     return ca.ldl_solve(side, diagonal, factor, order)
 
 
-def _scipy_ode(motion: CompiledRates, span: tuple[float, float], start: State, tol: float) -> State:
+def _scipy_ode(motion: RightHandSide, span: tuple[float, float], start: State, tol: float) -> State:
     integrator = ode(motion).set_integrator("dop853", rtol=tol, atol=tol, nsteps=MOST_STEPS)
     integrator.set_initial_value(start, span[0])
     state = integrator.integrate(span[1])
@@ -189,7 +189,7 @@ def _scipy_ode(motion: CompiledRates, span: tuple[float, float], start: State, t
     return state
 
 
-def _scipy_odeint(motion: CompiledRates, span: tuple[float, float], start: State, tol: float) -> State:
+def _scipy_odeint(motion: RightHandSide, span: tuple[float, float], start: State, tol: float) -> State:
     states, said = odeint(motion, start, span, tfirst=True, rtol=tol, atol=tol, mxstep=MOST_STEPS, full_output=True)
     if said["message"] != "Integration successful.":
         raise HolonomError(ErrorKind.METHOD_GAVE_UP, detail=f"scipy.integrate.odeint: {said['message']}")

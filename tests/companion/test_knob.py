@@ -35,7 +35,7 @@ console.log(JSON.stringify({...knob.follow(settings, until, samples), radius: kn
 
 
 @pytest.fixture(scope="module")
-def followed(companion):
+def simulated(companion):
     def follow(law, **changed):
         given = json.dumps([{**SETTINGS, "law": law, **changed}, UNTIL, SAMPLES])
         done = subprocess.run(
@@ -52,7 +52,7 @@ def known_models(results):
 
 
 @pytest.mark.parametrize("law", LAWS)
-def test_the_script_follows_the_motion_as_numpy_does(followed, known_models, law):
+def test_the_script_follows_the_motion_as_numpy_does(simulated, known_models, law):
     model = known_models[law]
     motion, controls = NumpyFunction(model.motion), NumpyFunction(model.law)
 
@@ -72,7 +72,7 @@ def test_the_script_follows_the_motion_as_numpy_does(followed, known_models, law
     first = values(0.0, [q1, q2, 0, v1, v2, 0])
     start = [q1, q2, first["u"] * (q1 + q2), v1, v2, first["dot(u)"] * (q1 + q2) + first["u"] * (v1 + v2)]
     truth = solve_ivp(rate, (0, UNTIL), start, "DOP853", np.linspace(0, UNTIL, SAMPLES), rtol=1e-12, atol=1e-12)
-    seen = followed(law)["seen"]
+    seen = simulated(law)["seen"]
     for k, state in enumerate(truth.y.T):
         expected = values(truth.t[k], state)
         power = expected["lambda1"] * expected["dot(u)"] * (expected["q1"] + expected["q2"])
@@ -81,25 +81,25 @@ def test_the_script_follows_the_motion_as_numpy_does(followed, known_models, law
         assert seen[k]["power"] == pytest.approx(power, abs=1e-6)
 
 
-def test_the_circle_is_that_of_the_zeros_of_the_denominator(followed):
+def test_the_circle_is_that_of_the_zeros_of_the_denominator(simulated):
     """1 + 2 u^2 = 0 at t = -u0 + i/sqrt(2) under u0 + t, at arccos(i/(sqrt(2) u0))/omega under u0 cos(omega t)."""
     u0, omega = SETTINGS["u0"], SETTINGS["omega"]
-    assert followed("linear")["radius"] == pytest.approx((u0**2 + 0.5) ** 0.5, rel=1e-9)
-    assert followed("swinging")["radius"] == pytest.approx(abs(cmath.acos(1j / (2**0.5 * u0))) / omega, rel=1e-9)
+    assert simulated("linear")["radius"] == pytest.approx((u0**2 + 0.5) ** 0.5, rel=1e-9)
+    assert simulated("swinging")["radius"] == pytest.approx(abs(cmath.acos(1j / (2**0.5 * u0))) / omega, rel=1e-9)
     exponential = abs(cmath.log(1j / (2**0.5 * u0))) / SETTINGS["kappa"]
-    assert followed("exponential")["radius"] == pytest.approx(exponential, rel=1e-9)
+    assert simulated("exponential")["radius"] == pytest.approx(exponential, rel=1e-9)
 
 
-def test_a_slow_law_has_a_wide_circle(followed):
-    assert followed("exponential", kappa=0.1)["radius"] == pytest.approx(
-        8 * followed("exponential")["radius"], rel=1e-9
+def test_a_slow_law_has_a_wide_circle(simulated):
+    assert simulated("exponential", kappa=0.1)["radius"] == pytest.approx(
+        8 * simulated("exponential")["radius"], rel=1e-9
     )
-    assert followed("exponential", kappa=0.0)["radius"] is None
+    assert simulated("exponential", kappa=0.0)["radius"] is None
 
 
 @pytest.mark.parametrize("kappa", [1.0, -1.0, 1.5])
-def test_every_motion_is_free_where_the_root_is_double(followed, kappa):
-    found = followed("exponential", kappa=kappa, k=kappa**2, c=2 * kappa)
+def test_every_motion_is_free_where_the_root_is_double(simulated, kappa):
+    found = simulated("exponential", kappa=kappa, k=kappa**2, c=2 * kappa)
     assert max(abs(each["lambda1"]) for each in found["seen"]) < 1e-12
     assert found["radius"] is None  # JSON has no infinity
 
@@ -109,5 +109,5 @@ def test_the_paper_s_damping_is_singled_out_by_a_proof(results):
     assert results[RUNS["other"]].motion.verdict == "not free"
 
 
-def test_a_knob_that_rocks_twice_as_fast_has_half_the_circle(followed):
-    assert followed("swinging", omega=4.0)["radius"] == pytest.approx(followed("swinging")["radius"] / 2, rel=1e-9)
+def test_a_knob_that_rocks_twice_as_fast_has_half_the_circle(simulated):
+    assert simulated("swinging", omega=4.0)["radius"] == pytest.approx(simulated("swinging")["radius"] / 2, rel=1e-9)

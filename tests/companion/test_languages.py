@@ -30,7 +30,7 @@ CODE = {"code", "pre", "math", "script", "style", "select"}
 
 
 @pytest.fixture(scope="module")
-def twins(tmp_path_factory):
+def partners(tmp_path_factory):
     """Directory of a companion in Chinese and English; a build takes nothing of the one before."""
     directory = tmp_path_factory.mktemp("twins") / "pages"
     cabin = pages.REPOSITORY / "examples" / "weightless_cabin.mac"
@@ -39,20 +39,20 @@ def twins(tmp_path_factory):
     return directory
 
 
-def test_every_page_has_its_twin_and_names_its_language(twins):
-    english = {page.relative_to(twins / "en") for page in pages.pages(twins / "en")}
-    assert {page.relative_to(twins) for page in pages.pages(twins)} == english | {"en" / page for page in english}
+def test_every_page_has_its_twin_and_names_its_language(partners):
+    english = {page.relative_to(partners / "en") for page in pages.pages(partners / "en")}
+    assert {page.relative_to(partners) for page in pages.pages(partners)} == english | {"en" / page for page in english}
     for page in english:
-        assert pages.parsed(twins / page).get("lang") == "zh-CN"
-        assert pages.parsed(twins / "en" / page).get("lang") == "en"
-    assert "自由运动" in pages.words(twins / "free-motion.html")
-    assert "自由运动" not in pages.words(twins / "en" / "free-motion.html")
+        assert pages.parsed(partners / page).get("lang") == "zh-CN"
+        assert pages.parsed(partners / "en" / page).get("lang") == "en"
+    assert "自由运动" in pages.words(partners / "free-motion.html")
+    assert "自由运动" not in pages.words(partners / "en" / "free-motion.html")
 
 
-def test_every_page_links_its_twin_in_both_directions(twins):
-    assert pages.broken_references(twins) == []
-    for page in pages.pages(twins / "en"):
-        twin = twins / page.relative_to(twins / "en")
+def test_every_page_links_its_twin_in_both_directions(partners):
+    assert pages.broken_references(partners) == []
+    for page in pages.pages(partners / "en"):
+        twin = partners / page.relative_to(partners / "en")
         assert linked(page, "zh") == [twin.resolve()]
         assert linked(twin, "en") == [page.resolve()]
 

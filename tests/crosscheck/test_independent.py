@@ -51,6 +51,6 @@ def test_jerk_of_a_bob_on_a_string_of_constant_length() -> None:
     unit_circle = {X: 0, Y: 1, VX: -3, VY: 0, U: 1, DU: 0, DDU: 0, M: 2, G: 0}
     steady = {**unit_circle, sp.Symbol("dddot(u)", real=True): 0}
     values = {symbol: mp.mpf(number) for symbol, number in steady.items()}
-    jerks = equations.bordered_rates.solution(values | equations.bordered.solution(values))
+    jerks = equations.bordered_derivatives.solution(values | equations.bordered.solution(values))
     assert jerks[sp.Symbol("dddot(x)", real=True)] == 27
     assert jerks[sp.Symbol("dddot(y)", real=True)] == 0

@@ -44,7 +44,9 @@ def verdicts(record: Record, description: Description, scene: Scene) -> dict[str
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("holonom.crosscheck.check._Check._on_derivation", lambda *_: ())
         report = check_record(changed, description)
-    return {found.number: found.verdict for found in report.verdicts if found.scene and found.held and found.number}
+    return {
+        found.number: found.verdict for found in report.verdicts if found.scene and found.is_recorded and found.number
+    }
 
 
 def fixed_values(scene: Scene) -> Equation:

@@ -32,4 +32,7 @@ def test_everything_that_moves_has_a_rate():
     rates = (1, VX, dotted("ddot", X), dotted("dddot", X), dotted("dot", U), dotted("ddot", U), dotted("dddot", U))
     weights = symbols("a b c d e f g h")
     expected = sp.Add(*(w * rate for w, rate in zip(weights, (*rates, dotted("dot", LAMBDA)), strict=True)))
-    assert sp.expand(system.total_rate(sp.Add(*(w * x for w, x in zip(weights, moving, strict=True)))) - expected) == 0
+    assert (
+        sp.expand(system.time_derivative(sp.Add(*(w * x for w, x in zip(weights, moving, strict=True)))) - expected)
+        == 0
+    )

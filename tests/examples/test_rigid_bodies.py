@@ -24,7 +24,7 @@ turning : holonomic_scene(system, parameter_values = [m = 1], time_span = [0, 1]
 """
 
 
-def followed(name: str, scene: str | None = None, samples: int = 3, **settings: float) -> Simulation:
+def simulated(name: str, scene: str | None = None, samples: int = 3, **settings: float) -> Simulation:
     motion = holonom.load(EXAMPLES / f"{name}.mac", scene, **settings).simulate(samples=samples)
     assert not motion.report.violations
     return motion
@@ -70,7 +70,7 @@ def newton_euler(end: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def test_the_top_on_a_moving_support_follows_newton_and_euler():
-    motion = followed("heavy_top")
+    motion = simulated("heavy_top")
     centre, R = newton_euler(5.0)
     assert values(motion, ["x", "y", "z"])[-1] == pytest.approx(centre, abs=1e-9)
     assert rotation(values(motion, ["e0", "e1", "e2", "e3"])[-1]) == pytest.approx(R, abs=1e-9)
@@ -81,7 +81,7 @@ def test_the_top_on_a_moving_support_follows_newton_and_euler():
 
 def test_the_satellites_spin_is_that_of_the_closed_form():
     # omega = (I3 + 2 m) omega0 / (I3 + 2 m u^2), u = 1 + t/5, and the angle is its integral
-    motion = followed("satellite", "slowed_scene")
+    motion = simulated("satellite", "slowed_scene")
     angle, _ = quad(lambda t: 10 / (3 + 2 * (1 + t / 5) ** 2), 0, 10, epsabs=1e-12)
     e, rate = (values(motion, [form.format(f"e{i}") for i in range(4)]) for form in ("{}", "dot({})"))
     assert e[-1] == pytest.approx([np.cos(angle / 2), 0, 0, np.sin(angle / 2)], abs=1e-11)
@@ -90,7 +90,7 @@ def test_the_satellites_spin_is_that_of_the_closed_form():
 
 @pytest.mark.long
 def test_the_tumbling_satellite_keeps_its_angular_momentum():
-    motion = followed("satellite", "tumbling_scene", samples=21)
+    motion = simulated("satellite", "tumbling_scene", samples=21)
     momentum = angular_momentum(motion, ("x", "y", "z"), ("e0", "e1", "e2", "e3"), 10, np.diag([1.0, 2, 3]))
     for k in "12":
         r, v = (values(motion, [form.format(x + k) for x in "xyz"]) for form in ("{}", "dot({})"))
@@ -115,7 +115,7 @@ def angular_momentum(motion: Simulation, r: tuple, e: tuple, mass: float, inerti
 
 @pytest.mark.parametrize("N", [3, pytest.param(6, marks=pytest.mark.long)])
 def test_a_closed_chain_of_any_number_of_bodies_keeps_momentum_and_energy(N):
-    motion = followed("ring", samples=5, N=N)
+    motion = simulated("ring", samples=5, N=N)
     places = [[f"{x}{k}" for x in "xyz"] for k in range(1, N + 1)]
     parameters = [[f"e{i}_{k}" for i in range(4)] for k in range(1, N + 1)]
     momentum = sum(
@@ -134,7 +134,7 @@ def test_a_closed_chain_of_any_number_of_bodies_keeps_momentum_and_energy(N):
 
 @pytest.mark.long
 def test_bricards_linkage_moves_as_its_closure_says_with_forces_that_are_unique():
-    motion = followed("hard/bricard_linkage", samples=21)
+    motion = simulated("hard/bricard_linkage", samples=21)
     joints = [values(motion, [f"{x}{k}" for x in "xyz"]) for k in range(1, 5)]
     loop = [np.zeros((21, 3)), *joints, np.tile([0, 0, 1], (21, 1))]
     cosines = [np.einsum("ij,ij->i", loop[k - 1] - loop[k], loop[(k + 1) % 6] - loop[k]) for k in range(6)]

@@ -19,7 +19,7 @@ from holonom.documents import ask
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Document
 from holonom.hidden import hidden_character
-from holonom.sandbox import UNCONFINED, Limits, Sandbox
+from holonom.sandbox import UNSANDBOXED, Limits, Sandbox
 from holonom.source import Source
 
 
@@ -203,5 +203,5 @@ def test_missing_sandbox_is_reported_and_derivation_is_same(bubblewrap, tmp_path
         text=True,
         check=False,
     )
-    assert (done.returncode, done.stderr) == (0, f"holonom: warning: {UNCONFINED}\n")
+    assert (done.returncode, done.stderr) == (0, f"holonom: warning: {UNSANDBOXED}\n")
     assert derivations(done.stdout) == derivations(particle_record)

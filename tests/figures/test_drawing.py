@@ -29,7 +29,7 @@ swing : holonomic_scene(system, control_law = [u = 1 + t/10], parameter_values =
 """
 
 
-def followed(file: Path, until: int | None = None, samples: int = 1801) -> tuple[MotionProblem, Simulation]:
+def simulated(file: Path, until: int | None = None, samples: int = 1801) -> tuple[MotionProblem, Simulation]:
     problem = motion_problem(file, Request(), Limits())
     return problem, simulate(problem, SimulationRequest(until=until, samples=samples))
 
@@ -55,7 +55,7 @@ def pendulum(write_scene):
 
 @pytest.fixture
 def film(pendulum):
-    problem, motion = followed(pendulum())
+    problem, motion = simulated(pendulum())
     return film_of(motion, problem.drawing)
 
 
@@ -79,7 +79,7 @@ def test_the_string_drawn_is_as_long_as_the_control_says(film):
 
 
 def test_links_of_the_chain_are_drawn_in_their_lengths():
-    problem, motion = followed(EXAMPLES / "chain.mac", samples=61)
+    problem, motion = simulated(EXAMPLES / "chain.mac", samples=61)
     film = film_of(motion, problem.drawing)
     nodes = film.numbers[film.shapes.index(Shape.POLYLINE)].reshape(len(film.times), -1, 2)
     lengths = np.linalg.norm(np.diff(nodes, axis=1), axis=2)
@@ -129,7 +129,7 @@ def test_same_motion_same_bytes(film):
 
 
 def test_a_long_motion_is_filmed_from_its_beginning(pendulum):
-    problem, motion = followed(pendulum(end="100"))
+    problem, motion = simulated(pendulum(end="100"))
     film = film_of(motion, problem.drawing)
     assert film.times[0] == 0
     assert film.times[-1] < 20
@@ -140,14 +140,14 @@ def test_a_long_motion_is_filmed_from_its_beginning(pendulum):
     ("end", "pace"), [("1/10", 0.1 / 4), ("6", 1), ("16", 16 / 12)], ids=["slowed", "in its time", "quickened"]
 )
 def test_a_film_takes_from_four_to_twelve_seconds(pendulum, end, pace):
-    problem, motion = followed(pendulum(drawing=", drawing = [circle([t, 0], 1)]", end=end))
+    problem, motion = simulated(pendulum(drawing=", drawing = [circle([t, 0], 1)]", end=end))
     film = film_of(motion, problem.drawing)
     assert film.pace == pytest.approx(pace)
 
 
 def test_tall_pictures_stand_side_by_side_and_flat_ones_in_a_column(pendulum):
     def shifts(drawing):
-        problem, motion = followed(pendulum(drawing=f", drawing = [{drawing}]"), samples=61)
+        problem, motion = simulated(pendulum(drawing=f", drawing = [{drawing}]"), samples=61)
         found = ElementTree.fromstring(strip(film_of(motion, problem.drawing))).iter(f"{SVG}g")
         pairs = [each.get("transform")[10:-1].split(",") for each in found if each.get("transform")]
         return {tuple(float(shift) != 0 for shift in pair) for pair in pairs}

@@ -7,7 +7,7 @@ import pytest
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.figures.style import INK, PALETTE, figure_style, lettered, new_figure, write_figure
+from holonom.figures.style import INK, PALETTE, figure_style, new_figure, with_symbols, write_figure
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -60,4 +60,4 @@ def test_what_cannot_be_written_is_refused(tmp_path):
     [("lambda1", "λ₁"), ("q12", "q₁₂"), ("dot(phi)", "φ̇"), ("Lambda", "Λ"), ("x", "x"), ("slider", "slider")],
 )
 def test_quantities_are_named_by_their_letters(name, letters):
-    assert lettered(name) == letters
+    assert with_symbols(name) == letters

@@ -19,7 +19,7 @@ from holonom.sandbox import Limits
 from holonom.series.heyoka_series import continue_motion, expand
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest
-from holonom.simulation.simulate import follow, simulate
+from holonom.simulation.simulate import integrate, simulate
 
 PENDULUM = Path(__file__).resolve().parents[2] / "examples" / "pendulum.mac"
 DIGITS = 1000
@@ -38,7 +38,7 @@ def test_the_order_is_that_of_heyokas_steps(pendulum, digits):
 
 REQUESTS = {
     "a motion": lambda problem, numbers: simulate(problem, SimulationRequest(precision=numbers.digits)),
-    "a motion by larger steps": lambda problem, numbers: follow(
+    "a motion by larger steps": lambda problem, numbers: integrate(
         problem, SimulationRequest(tol=1e-300, precision=numbers.digits, until=Fraction(100)), print
     ),
     "a series": lambda problem, numbers: expand(problem, 5000, numbers),

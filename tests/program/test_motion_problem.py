@@ -42,7 +42,7 @@ def test_a_constraint_given_twice_is_reported_and_its_multiplier_is_zero(write_s
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x - y, x - y])$
 slide : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1])$""")
     problem = motion_problem(file, Request(), Limits())
-    assert problem.obstacle is None
+    assert problem.obstruction is None
     assert problem.motion.redundant == ("lambda2",)
     assert problem.motion.outputs["lambda2"] == 0
     assert problem.independent == (0,)

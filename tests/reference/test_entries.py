@@ -40,18 +40,18 @@ CASES = [
         for entry in function.entries
     ),
     *(
-        (call(function, refusal.given, *refusal.also, system=entry.system), refusal.message)
+        (call(function, error.given, *error.also, system=entry.system), error.message)
         for function in (SYSTEM, SCENE)
         for entry in function.entries
-        for refusal in entry.refused
+        for error in entry.errors
     ),
     *((f"block([{BODIES}], {part.example})", None) for part in part_texts()),
-    *((f"block([{BODIES}], {refusal.given})", refusal.message) for part in part_texts() for refusal in part.refused),
+    *((f"block([{BODIES}], {error.given})", error.message) for part in part_texts() for error in part.errors),
     *(
         (in_context(step, f'if ratsimp({step.example}) # ratsimp({step.gives}) then error("gives another")'), None)
         for step in step_texts()
     ),
-    *((in_context(step, refusal.given), refusal.message) for step in step_texts() for refusal in step.refused),
+    *((in_context(step, error.given), error.message) for step in step_texts() for error in step.errors),
     *(case for step in step_texts() for case in misused(step)),
     ("dot(x + y)", "Write dot of each name"),
     *((f"{name}(x)", f"{name}: the first argument") for name in ("print_derivation", "free_motion_of")),

@@ -28,13 +28,13 @@ def test_a_byte_is_a_character_as_maxima_counts():
 def test_every_entry_is_a_topic_with_its_whole_text(entry):
     found = [explained(topic) for topic in TOPICS if topic.partition(" ")[0] == entry.name]
     [text] = [text for text in found if text.startswith(f"-- Entry of {entry.function}: {entry.name} ")]
-    message = (entry.text, entry.type, entry.default, entry.example, *(refusal.message for refusal in entry.refused))
+    message = (entry.text, entry.type, entry.default, entry.example, *(error.message for error in entry.errors))
     assert all(" ".join(each.split()) in text for each in message)
 
 
 @pytest.mark.parametrize("part", [*part_texts(), *step_texts()], ids=lambda part: part.name)
 def test_every_function_called_by_itself_is_a_topic_with_its_whole_text(part):
-    message = (part.call, part.text, part.example, part.gives, *(refusal.message for refusal in part.refused))
+    message = (part.call, part.text, part.example, part.gives, *(error.message for error in part.errors))
     [text] = [found for topic in TOPICS if f"-- Function: {part.call} " in (found := explained(topic))]
     assert all(" ".join(each.split()) in text for each in message)
 

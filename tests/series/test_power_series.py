@@ -331,9 +331,9 @@ def test_derivatives_of_rounded_series_are_those_of_the_motion_s_sensitivities()
     scene = holonom.load(PENDULUM)
     names = ["x", "g", "dot(x)"]
     found = values_at(scene.series(order=30, sensitivities=names), Fraction(1, 10)).values
-    followed = scene.simulate(until=0.1, sensitivities=names)
+    simulated = scene.simulate(until=0.1, sensitivities=names)
     for name in (f"d({y}, {p})" for y in ("x", "y", "lambda1") for p in names):
-        assert float(found[name]) == pytest.approx(float(followed[name][-1]), rel=1e-12), name
+        assert float(found[name]) == pytest.approx(float(simulated[name][-1]), rel=1e-12), name
 
 
 def test_derivatives_of_a_motion_at_rest_are_no_polynomials(write_scene):

@@ -50,7 +50,7 @@ NARROW = {
 
 
 @pytest.fixture
-def followed(holonom_here, write_scene):
+def simulated(holonom_here, write_scene):
     def simulate(place: str, *options: str):
         return holonom_here("simulate", write_scene(WELL.format(place=place)), *options, "--final", "--json", "-")
 
@@ -58,8 +58,8 @@ def followed(holonom_here, write_scene):
 
 
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_was_passed_over_in_silence(followed, place):
-    done = followed(place)
+def test_a_narrow_place_was_passed_over_in_silence(simulated, place):
+    done = simulated(place)
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"]) == (1, False)
     assert "acceleration" in [violation["quantity"] for violation in found["violations"]]
@@ -68,8 +68,8 @@ def test_a_narrow_place_was_passed_over_in_silence(followed, place):
 
 
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_that_the_steps_look_at_is_no_violation(followed, place):
-    done = followed(place, "--max-step", "0.001")
+def test_a_narrow_place_that_the_steps_look_at_is_no_violation(simulated, place):
+    done = simulated(place, "--max-step", "0.001")
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"], done.stderr) == (0, True, "")
 

@@ -22,7 +22,7 @@ def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
     return EnergyBalance(asked, multipliers)
 
 
-def followed(asked, until: float):
+def simulated(asked, until: float):
     """Energy gained and work done along a motion."""
     motion = RobustEngine(asked, 1e-12)
     balance = balance_of(motion, asked)
@@ -37,7 +37,7 @@ def followed(asked, until: float):
 
 
 def test_a_table_that_rises_does_the_work_of_the_weight(particle_scene):
-    gained, work, balance = followed(motion_problem(particle_scene, Request(), Limits()), 1.5)
+    gained, work, balance = simulated(motion_problem(particle_scene, Request(), Limits()), 1.5)
     assert not balance.conservative
     assert work == pytest.approx(2 * 9.81 * 1.5, rel=1e-13)  # m g u, the table rising by u = t
     assert gained == pytest.approx(work, rel=1e-13)
@@ -55,7 +55,7 @@ def test_a_table_that_rises_does_the_work_of_the_weight(particle_scene):
     ],
 )
 def test_energy_gained_is_work_done(name, scene, until):
-    gained, work, balance = followed(problem(f"{name}.mac", scene), until)
+    gained, work, balance = simulated(problem(f"{name}.mac", scene), until)
     assert not balance.conservative
     assert abs(gained) > 1e-3
     assert abs(gained - work) <= 1e-9 * max(1.0, abs(gained))
@@ -74,7 +74,7 @@ def test_work_is_integrated_in_the_digits_of_the_motion(precision, digits, write
 
 
 def test_where_nothing_does_work_the_energy_stays():
-    gained, work, balance = followed(problem("linkage.mac"), 2.0)
+    gained, work, balance = simulated(problem("linkage.mac"), 2.0)
     assert balance.conservative
     assert work == 0
     assert abs(gained) <= 1e-10

@@ -257,9 +257,9 @@ system : holonomic_system(coordinates = [x, y], controls = [F], kinetic_energy =
   [drive = [F, F], friction = [3 - 2*signum(dot(x) - dot(y)), 2*signum(dot(x) - dot(y))]])$
 led : holonomic_scene(system, servo_constraints = [y = sin(t)], initial_state = [x = 0, dot(x) = 2], time_span = [0, 2],
   observe = [trajectory, controls])$""").simulate(samples=9)
-    t, held = motion.times, motion.times > 1
-    assert (motion["dot(x)"] - motion["dot(y)"])[held] == pytest.approx(0, abs=1e-14)
-    assert motion["F"] == pytest.approx(-np.sin(t) - np.where(held, 3 / 2, 2), rel=1e-13)
+    t, late = motion.times, motion.times > 1
+    assert (motion["dot(x)"] - motion["dot(y)"])[late] == pytest.approx(0, abs=1e-14)
+    assert motion["F"] == pytest.approx(-np.sin(t) - np.where(late, 3 / 2, 2), rel=1e-13)
 
 
 @pytest.mark.parametrize("samples", [3, 4])

@@ -70,7 +70,7 @@ def final(motion: MotionProblem, **request) -> Report:
     return simulate(motion, SimulationRequest(samples=0, **request)).report
 
 
-def followed(motion: MotionProblem, **request) -> Simulation:
+def simulated(motion: MotionProblem, **request) -> Simulation:
     return simulate(motion, SimulationRequest(**request))
 
 
@@ -87,7 +87,7 @@ def free_motion_of_the_paper(t):
 
 
 def test_the_papers_free_motion_is_its_closed_form():
-    simulation = followed(problem("paper/paper.mac", "free_motion_scene"), samples=21)
+    simulation = simulated(problem("paper/paper.mac", "free_motion_scene"), samples=21)
     expected = free_motion_of_the_paper(simulation.times)
     for samples, truth in zip(simulation.coordinates.values(), expected, strict=True):
         assert samples == pytest.approx(truth, rel=1e-12, abs=1e-12)
@@ -96,7 +96,7 @@ def test_the_papers_free_motion_is_its_closed_form():
 
 def test_a_pendulum_swings_as_jacobis_elliptic_functions_say():
     """Truth: released at rest at the angle a, sin(theta/2) = sin(a/2) cd(sqrt(g) t)."""
-    simulation = followed(problem("pendulum.mac", "swing_scene"), samples=11)
+    simulation = simulated(problem("pendulum.mac", "swing_scene"), samples=11)
     k = mpmath.sin(mpmath.pi / 26)
     for t, x, y in zip(simulation.times, *simulation.coordinates.values(), strict=True):
         half = mpmath.asin(k * mpmath.ellipfun("cd", mpmath.sqrt(9.81) * t, k=k))
@@ -276,7 +276,7 @@ def test_energy_is_balanced_by_the_work_of_the_control():
     """Truth: the energy of a pendulum that is paid out changes, by the work of the string alone."""
     motion = problem("pendulum.mac", "lengthening_scene")
     observing = MotionProblem(**{**vars(motion), "observe": ("energy", "residuals")})
-    simulation = followed(observing, samples=50, until=Fraction(20))
+    simulation = simulated(observing, samples=50, until=Fraction(20))
     energy, error = simulation.energy["energy"], simulation.energy["energy_error"]
     assert np.ptp(energy) > 1
     assert np.abs(error).max() < 1e-11
@@ -354,7 +354,7 @@ def test_extended_precision_has_three_digits_more_than_double():
 
 def test_samples_are_those_asked_for():
     motion = problem("pendulum.mac", "swing_scene")
-    steps, few, last = (followed(motion, samples=samples) for samples in (None, 5, 0))
+    steps, few, last = (simulated(motion, samples=samples) for samples in (None, 5, 0))
     assert len(steps.times) == steps.report.steps + 1
     assert few.times.tolist() == [0, 2.5, 5, 7.5, 10]
     assert last.times.tolist() == [10]

@@ -15,7 +15,7 @@ from holonom.simulation import output, recording
 from holonom.simulation.output import require_disk, sample_file, write_samples
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Sampled
-from holonom.simulation.simulate import EnergyStatistics, follow, simulate
+from holonom.simulation.simulate import EnergyStatistics, integrate, simulate
 
 SAMPLES = 50
 LARGER = 20e6
@@ -34,15 +34,15 @@ def short_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(recording, "PORTION", 3)
 
 
-def followed(asked: MotionProblem, **wanted) -> list[Sampled]:
+def simulated(asked: MotionProblem, **wanted) -> list[Sampled]:
     parts: list[Sampled] = []
-    follow(asked, SimulationRequest(until=3, **wanted), parts.append)
+    integrate(asked, SimulationRequest(until=3, **wanted), parts.append)
     return parts
 
 
 @pytest.mark.parametrize("wanted", [{"samples": SAMPLES}, {"max_step": 0.05}], ids=["samples", "steps"])
 def test_blocks_are_the_motion_and_none_is_longer_than_it_may_be(lengthening, short_blocks, wanted):
-    parts = followed(lengthening, **wanted)
+    parts = simulated(lengthening, **wanted)
     together = np.concatenate([part.times for part in parts])
     assert max(len(part.times) for part in parts) <= recording.BLOCK < len(together)
     assert together[0] == 0
@@ -65,7 +65,7 @@ def test_the_report_does_not_depend_on_the_blocks(lengthening, monkeypatch):
 
 @pytest.mark.parametrize("suffix", [".csv", ".parquet"])
 def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening, short_blocks, tmp_path, suffix):
-    parts = followed(lengthening, samples=SAMPLES)
+    parts = simulated(lengthening, samples=SAMPLES)
     with sample_file(tmp_path / f"parts{suffix}", 17) as take:
         for part in parts:
             take(part)
@@ -76,7 +76,7 @@ def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening
 
 @pytest.mark.parametrize("suffix", [".csv", ".npz", ".parquet"])
 def test_a_motion_that_breaks_off_leaves_no_file(lengthening, tmp_path, suffix):
-    (part,) = followed(lengthening, samples=5)
+    (part,) = simulated(lengthening, samples=5)
     file = tmp_path / f"broken{suffix}"
     with pytest.raises(HolonomError, match="cannot be continued"):
         broken_off(part, file)
@@ -106,11 +106,11 @@ def test_a_sample_takes_no_more_of_the_disk_than_is_stated(lengthening, tmp_path
 
 def test_an_energy_that_is_no_number_is_not_passed_over():
     """Of a larger number and none, max() in Python takes the first."""
-    exchange = EnergyStatistics()
-    exchange.add(np.array([2.0]), np.array([0.5]))
-    exchange.add(np.array([np.nan]), np.array([np.nan]))
-    exchange.add(np.array([2.0]), np.array([0.5]))
-    assert np.isnan([exchange.exchanged, exchange.error]).all()
+    energy_statistics = EnergyStatistics()
+    energy_statistics.add(np.array([2.0]), np.array([0.5]))
+    energy_statistics.add(np.array([np.nan]), np.array([np.nan]))
+    energy_statistics.add(np.array([2.0]), np.array([0.5]))
+    assert np.isnan([energy_statistics.largest_change, energy_statistics.error]).all()
 
 
 @pytest.mark.long

@@ -5,7 +5,7 @@ from math import ceil
 
 import numpy as np
 
-from holonom.simulation.engines.engine import Obstacle, Solutions, Step
+from holonom.simulation.engines.engine import Obstruction, Solutions, Step
 from holonom.simulation.evaluation import evaluation_once
 from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.inputs import Inputs
@@ -48,7 +48,9 @@ class ToyEngine:
         while self.time < until:
             if STOPS_AT <= self.time < GOES_ON_AT:
                 reason = "the toy stops here"
-                raise Obstacle(self.time, Difficulty.SINGULAR_CONFIGURATION, reason, lambda t, state: t >= GOES_ON_AT)
+                raise Obstruction(
+                    self.time, Difficulty.SINGULAR_CONFIGURATION, reason, lambda t, state: t >= GOES_ON_AT
+                )
             start, state, left = self.time, self.state, until - self.time
             self.time = until if left <= STEP else start + left / ceil(left / STEP)
             self.state = self._reached(start, state, self.time)

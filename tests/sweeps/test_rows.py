@@ -193,15 +193,15 @@ def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
 
 SHORT = ("0/0", "at(1/(x-x),1)", "zero(1/(k-k))")
 LONG = ("1/0", "log(-1-x^2)", "max(1/(k-k))", "mean(sqrt(-1-x^2))")
-NOWHERE_FINITE = [*SHORT, *(pytest.param(kept, marks=pytest.mark.long) for kept in LONG)]
+NOWHERE_FINITE = [*SHORT, *(pytest.param(outputs, marks=pytest.mark.long) for outputs in LONG)]
 
 
-@pytest.mark.parametrize("kept", NOWHERE_FINITE)
-def test_a_row_without_a_finite_value_says_so_and_keeps_none(rows_of, scenes, kept):
-    found = columns(rows_of(scenes / "oscillator.mac", f"{kept},x", "k=1:4:3", "m=1:2:1").table(0, 3))
+@pytest.mark.parametrize("outputs", NOWHERE_FINITE)
+def test_a_row_without_a_finite_value_says_so_and_keeps_none(rows_of, scenes, outputs):
+    found = columns(rows_of(scenes / "oscillator.mac", f"{outputs},x", "k=1:4:3", "m=1:2:1").table(0, 3))
     assert (found["status"] == Status.UNDEFINED).all()
-    assert all(note.startswith(kept) for note in found["note"])
-    assert np.isnan(found[kept]).all()
+    assert all(note.startswith(outputs) for note in found["note"])
+    assert np.isnan(found[outputs]).all()
     assert np.isfinite(found["x"]).all()
 
 
@@ -327,14 +327,14 @@ def test_the_radius_is_the_distance_of_the_nearest_singularity(rows_of):
 
 
 def test_without_projection_the_constraints_drift(rows_of):
-    kept, left = (
+    outputs, left = (
         columns(rows_of("crane.mac", "final", "m=50:500:3", stabilization=stabilization, tol=1e-6).table(0, 3))[
             "residual"
         ]
         for stabilization in (Stabilization.PROJECTION, Stabilization.NONE)
     )
-    assert (kept < 1e-14).all()
-    assert (left > 100 * kept).all()
+    assert (outputs < 1e-14).all()
+    assert (left > 100 * outputs).all()
 
 
 def test_a_quantity_that_the_motion_does_not_have_is_refused(rows_of):

@@ -10,24 +10,24 @@ from holonom.sweeps.outputs import Kind, read_quantities
 
 
 def test_items_are_distinguished_by_commas_outside_of_brackets():
-    kept = read_quantities(["final, at(x, 5/2)", "max(abs(lambda1)),zero( dot(y) )", "final"])
-    assert [(item.text, item.kind) for item in kept] == [
+    outputs = read_quantities(["final, at(x, 5/2)", "max(abs(lambda1)),zero( dot(y) )", "final"])
+    assert [(item.text, item.kind) for item in outputs] == [
         ("final", Kind.FINAL),
         ("at(x,5/2)", Kind.AT),
         ("max(abs(lambda1))", Kind.LARGEST),
         ("zero(dot(y))", Kind.ZERO),
     ]
-    assert kept[1].time == Fraction(5, 2)
-    assert kept[3].quantity == Name("dot(y)")
+    assert outputs[1].time == Fraction(5, 2)
+    assert outputs[3].quantity == Name("dot(y)")
 
 
 def test_an_expression_has_the_precedence_of_maxima():
-    (kept,) = read_quantities(["-x^2/2 + m*Lambda[1]"])
+    (outputs,) = read_quantities(["-x^2/2 + m*Lambda[1]"])
     two = Fraction(2)
     power = Call(Operation.POWER, (Name("x"), two))
     half = Call(Operation.DIVIDE, (Call(Operation.NEGATE, (power,)), two))
-    assert kept.quantity == Call(Operation.ADD, (half, Call(Operation.MULTIPLY, (Name("m"), Name("Lambda[1]")))))
-    assert (kept.kind, kept.time) == (Kind.AT, None)
+    assert outputs.quantity == Call(Operation.ADD, (half, Call(Operation.MULTIPLY, (Name("m"), Name("Lambda[1]")))))
+    assert (outputs.kind, outputs.time) == (Kind.AT, None)
 
 
 @pytest.mark.parametrize(

@@ -32,15 +32,15 @@ motion : holonomic_scene(system, parameter_values = [k = 1], initial_state = [{s
 
 PLANE = "(dot(x)^2 + dot(y)^2)/2"
 LEDGE = "k*atan(10^13*(x - 1/2))"  # too steep for the Taylor coefficients of a step that begins before it
-OK, DOUBTFUL, BROKEN_OFF = Status.OK, Status.DOUBTFUL, Status.BROKEN_OFF
+OK, INACCURATE, BROKEN_OFF = Status.OK, Status.INACCURATE, Status.BROKEN_OFF
 SCENES = {
     "a ledge": (
         scene("x", "dot(x)^2/2", LEDGE, "x = 0, dot(x) = 1", "1"),
-        ("0:1/10:3", [OK, DOUBTFUL, DOUBTFUL]),
+        ("0:1/10:3", [OK, INACCURATE, INACCURATE]),
     ),
     "a ledge, and back": (
         scene("x", "dot(x)^2/2", f"x^2/2 + {LEDGE}", "x = 0, dot(x) = 1", "44/7"),
-        ("0:1/20:2", [OK, DOUBTFUL]),
+        ("0:1/20:2", [OK, INACCURATE]),
     ),
     "nearly a collision": (
         scene("x, y", PLANE, "-1/sqrt(x^2 + y^2)", "x = 1, y = 0, dot(x) = 0, dot(y) = k", "4"),
@@ -56,7 +56,7 @@ LONG = {
     ),
     "a narrow well": (
         scene("x, y", PLANE, "-k*exp(-(1000*(x - 1/2))^2)", "x = 0, dot(x) = 1", "1", "constraints = [y - x^2]"),
-        ("0:1/10:2", [OK, DOUBTFUL]),
+        ("0:1/10:2", [OK, INACCURATE]),
     ),
     "dry friction": (
         scene("x", "dot(x)^2/2", "0", "x = 0, dot(x) = 1", "3", "forces = [-k*signum(dot(x))]"),
@@ -84,7 +84,7 @@ def verdict(problem, k: Fraction) -> str:
         motion = simulate(at_values(problem, {"k": k}), SimulationRequest(tol=TOLERANCE))
     except HolonomError:
         return Status.BROKEN_OFF
-    return Status.OK if motion.report.trusted else Status.DOUBTFUL
+    return Status.OK if motion.report.trusted else Status.INACCURATE
 
 
 @pytest.fixture(scope="module")

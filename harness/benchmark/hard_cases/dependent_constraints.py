@@ -13,8 +13,8 @@ from ...language import translatable
 from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import MotionMatrices, Vector
 from .case import Extent, Findings, Sweep, certified, correct_digits, holonom_result, required
-from .runs import baseline_motion, places_kept, problem, simulated
-from .solves import SolveAt, every_solve, solves_kept
+from .runs import baseline_motion, place_digits, problem, simulated
+from .solves import SolveAt, every_solve, solve_digits
 
 ANGLES = tuple(10.0**-k for k in range(1, 12))  # between the rods, of length 1: the hinges are as far apart
 COMPARED_ANGLE = 1e-7
@@ -40,7 +40,7 @@ def parallel_constraints(extent: Extent) -> Findings:
     solves = every_solve("hard/swing.mac")
     digits = {name: tuple(_worst(solve, angle) for angle in ANGLES) for name, solve in solves.items()}
     there = {name: row[ANGLES.index(COMPARED_ANGLE)] for name, row in digits.items()}
-    yield from solves_kept(
+    yield from solve_digits(
         translatable("accelerations at the angle %(angle)g", angle=COMPARED_ANGLE), there, needed=8.0
     )
     yield Sweep(translatable("angle between the constraints"), ANGLES, digits)
@@ -81,9 +81,9 @@ def sarrus_linkage(extent: Extent) -> Findings:
     """
     phi, needed = fallen(UNTIL), 12.0
     places, reactions = coordinates(phi), constraint_forces(phi)
-    motion, plain = simulated(problem(SARRUS), float(UNTIL)), baseline_motion(problem(SARRUS), float(UNTIL))
+    motion, baseline = simulated(problem(SARRUS), float(UNTIL)), baseline_motion(problem(SARRUS), float(UNTIL))
     multipliers = chosen_multipliers(motion.state, reactions)
-    yield from places_kept(translatable("coordinates"), plain, motion, places, needed)
+    yield from place_digits(translatable("coordinates"), baseline, motion, places, needed)
     yield holonom_result(
         motion.engine, translatable("constraint forces"), correct_digits(motion.constraint_forces, reactions), needed
     )
@@ -170,8 +170,8 @@ def chosen_multipliers(state: Vector, forces: list[mpf]) -> Vector:
     -------
     Vector, shape (g,)
     """
-    kept = list(problem(SARRUS).independent)
+    independent = list(problem(SARRUS).independent)
     jacobian = MotionMatrices(problem(SARRUS)).independent(float(UNTIL), state).jacobian
     multipliers = np.zeros(len(problem(SARRUS).multipliers))
-    multipliers[kept] = np.linalg.lstsq(jacobian.T, np.array(forces, dtype=float))[0]
+    multipliers[independent] = np.linalg.lstsq(jacobian.T, np.array(forces, dtype=float))[0]
     return multipliers

@@ -15,7 +15,7 @@ from ...language import translatable
 from ...simulation.matrices import Vector
 from .case import Extent, Findings, correct_digits, holonom_result
 from .runs import problem, simulated
-from .solves import SolveAt, every_solve, solves_kept
+from .solves import SolveAt, every_solve, solve_digits
 
 FILE = "hard/heavy_bob.mac"
 DIGITS = 60  # of the truth
@@ -45,7 +45,7 @@ def mass_ratio(extent: Extent) -> Findings:
         A method's digits.
     """
     digits = {name: _worst(solve) for name, solve in every_solve(FILE).items()}
-    yield from solves_kept(translatable("accelerations"), digits, NEEDED)
+    yield from solve_digits(translatable("accelerations"), digits, NEEDED)
     motion = simulated(problem(FILE), UNTIL)
     places = correct_digits(motion.coordinates, falling(mpf(UNTIL)))
     yield holonom_result(motion.engine, translatable("places at t = %(t)s", t=UNTIL), places, NEEDED_PLACES)

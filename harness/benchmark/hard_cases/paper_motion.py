@@ -8,8 +8,8 @@ from mpmath import exp, mpf
 
 from ...language import translatable
 from .case import Extent, Findings, certified, digits_of_error, holonom_result
-from .runs import baseline_motion, places_kept, problem, simulated
-from .solves import TEXTBOOK, SolveAt, every_solve, solves_kept
+from .runs import baseline_motion, place_digits, problem, simulated
+from .solves import TEXTBOOK, SolveAt, every_solve, solve_digits
 
 SCENE = "paper/paper.mac", "free_motion_scene"
 with certified:
@@ -101,7 +101,7 @@ def free_motion(extent: Extent) -> Findings:
     digits = {
         name: min(_vanishing(solve, mpf(t)) for t in range(last + 1)) for name, solve in every_solve(*SCENE).items()
     }
-    yield from solves_kept(translatable("zero multiplier"), digits, needed, compared=(TEXTBOOK,))
+    yield from solve_digits(translatable("zero multiplier"), digits, needed, compared=(TEXTBOOK,))
     motion = simulated(problem(*SCENE), last)
     yield holonom_result(
         motion.engine,
@@ -141,9 +141,9 @@ def overflowing_control(extent: Extent) -> Findings:
     """
     needed = 11.0
     for t in (355, 360):
-        motion, plain = simulated(problem(*SCENE), t), baseline_motion(problem(*SCENE), t)
-        yield from places_kept(
-            translatable("coordinates at t = %(t)s", t=t), plain, motion, coordinates(mpf(t)), needed
+        motion, baseline = simulated(problem(*SCENE), t), baseline_motion(problem(*SCENE), t)
+        yield from place_digits(
+            translatable("coordinates at t = %(t)s", t=t), baseline, motion, coordinates(mpf(t)), needed
         )
         yield holonom_result(
             motion.engine, translatable("zero multiplier at t = %(t)s", t=t), _zero(motion.multipliers[0], t), needed

@@ -19,7 +19,7 @@ from .case import (
     reference_result,
     required,
 )
-from .runs import PLAIN, baseline_motion, places_kept, problem, simulated
+from .runs import BASELINE, baseline_motion, place_digits, problem, simulated
 
 with certified:
     GRAVITY = mpf("9.81")
@@ -130,8 +130,8 @@ def constraint_given_twice(extent: Extent) -> Findings:
     x, depth = swing(pi / 2, FREQUENCY, mpf(until))
     multiplier = -3 * GRAVITY * depth  # m g cos(phi) + m l phi'^2, phi'^2 = 2 g/l cos(phi), towards the hinge
     force = [multiplier * x, -multiplier * depth]
-    motion, plain = simulated(swinging, until), baseline_motion(swinging, until)
-    yield from places_kept(translatable("coordinates"), plain, motion, [x, -depth], needed)
+    motion, baseline = simulated(swinging, until), baseline_motion(swinging, until)
+    yield from place_digits(translatable("coordinates"), baseline, motion, [x, -depth], needed)
     yield holonom_result(
         motion.engine, translatable("constraint force"), correct_digits(motion.constraint_forces, force), needed
     )
@@ -165,10 +165,10 @@ def dead_centres(extent: Extent) -> Findings:
         energy = mpf(2) / 3 / 2 + mpf(1) / 2 + 2 * GRAVITY  # two rods and a coupler, upright at 1 m/s
     linkage, turns, needed = problem("linkage.mac"), REVOLUTIONS[extent], 6.0
     until = round(turns * revolution(frequency))
-    motion, plain = simulated(linkage, until), baseline_motion(linkage, until)
+    motion, baseline = simulated(linkage, until), baseline_motion(linkage, until)
     tip = turning(frequency, mpf(until))
-    yield from places_kept(
-        translatable("place after %(turns)s revolutions", turns=turns), plain, motion, tip, needed, scale=1
+    yield from place_digits(
+        translatable("place after %(turns)s revolutions", turns=turns), baseline, motion, tip, needed, scale=1
     )
     yield holonom_result(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, energy), needed)
     yield required(
@@ -179,7 +179,7 @@ def dead_centres(extent: Extent) -> Findings:
 
 
 PERIODS = 10_000
-PLAIN_PERIODS = {Extent.SHORT: 50, Extent.FULL: 1_000}  # the baseline takes 20 ms for one
+BASELINE_PERIODS = {Extent.SHORT: 50, Extent.FULL: 1_000}  # the baseline takes 20 ms for one
 
 
 def long_run(extent: Extent) -> Findings:
@@ -198,17 +198,17 @@ def long_run(extent: Extent) -> Findings:
     swinging = problem("pendulum.mac", "swing_scene")
     needed, needed_of_residual = 9.0, 12.0  # of the place rounding alone leaves eleven
     energy = GRAVITY  # to turn upright takes twice as much
-    periods = PLAIN_PERIODS[extent]
+    periods = BASELINE_PERIODS[extent]
     until, place = _after(periods)
     state = baseline_motion(swinging, until)
     yield reference_result(
-        PLAIN,
+        BASELINE,
         translatable("place after %(periods)s periods", periods=periods),
         correct_digits(state[:2], place),
         needed,
     )
     yield reference_result(
-        PLAIN,
+        BASELINE,
         translatable("constraint"),
         digits_of_error(abs(state[0] ** 2 + state[1] ** 2 - 1), 1),
         needed_of_residual,

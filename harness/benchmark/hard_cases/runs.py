@@ -26,7 +26,7 @@ from .case import Result, correct_digits, holonom_result, reference_result
 
 EXAMPLES = shared("examples")
 TOLERANCE = 1e-12  # of the baseline
-PLAIN = translatable("bordered system, DOP853")
+BASELINE = translatable("bordered system, DOP853")
 EVALUATIONS = 1_000_000  # after them it counts as stuck
 
 
@@ -105,8 +105,8 @@ def _numbers(values: Mapping[str, float]) -> Vector:
     return np.array([float(value) for value in values.values()])
 
 
-def places_kept(
-    quantity: str, plain: Vector, motion: Arrived, truth: Sequence[mpf], needed: float, scale: float | None = None
+def place_digits(
+    quantity: str, baseline: Vector, motion: Arrived, truth: Sequence[mpf], needed: float, scale: float | None = None
 ) -> Iterator[Result]:
     """Yield the digits of the first coordinates, by the baseline and by Holonom.
 
@@ -114,7 +114,7 @@ def places_kept(
     ----------
     quantity : str
         Name of the quantity.
-    plain : Vector, shape (2n,)
+    baseline : Vector, shape (2n,)
         Final state by the baseline.
     motion : Arrived
         Final state by Holonom.
@@ -131,7 +131,7 @@ def places_kept(
         One method's digits.
     """
     first = slice(len(truth))
-    yield reference_result(PLAIN, quantity, correct_digits(plain[first], truth, scale), needed)
+    yield reference_result(BASELINE, quantity, correct_digits(baseline[first], truth, scale), needed)
     yield holonom_result(motion.engine, quantity, correct_digits(motion.coordinates[first], truth, scale), needed)
 
 

@@ -56,7 +56,7 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     }
 
 
-def solves_kept(
+def solve_digits(
     quantity: str, digits: Mapping[str, float], needed: float, compared: tuple[str, ...] = (TEXTBOOK, DIRECT)
 ) -> Iterator[Result]:
     """Yield the digits of each solve. The solves in `compared` may lose digits.
@@ -77,8 +77,8 @@ def solves_kept(
     Result
         One solve's digits.
     """
-    for name, kept in digits.items():
-        yield (reference_result if name in compared else holonom_result)(name, quantity, kept, needed)
+    for name, correct in digits.items():
+        yield (reference_result if name in compared else holonom_result)(name, quantity, correct, needed)
 
 
 def textbook(matrices: Matrices) -> Solved:

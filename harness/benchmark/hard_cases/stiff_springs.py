@@ -11,7 +11,7 @@ from mpmath import cos, eigsy, matrix, mpf, sqrt
 
 from ...language import translatable
 from .case import Extent, Findings, certified, digits_of_error, holonom_result
-from .runs import baseline_motion, places_kept, problem, simulated
+from .runs import baseline_motion, place_digits, problem, simulated
 
 TIMES = {Extent.SHORT: 1, Extent.FULL: 10}  # seconds; 195 oscillations of the stiff spring each
 
@@ -59,9 +59,9 @@ def stiff_spring(extent: Extent) -> Findings:
         A method's digits.
     """
     rail, until, needed = problem("hard/stiff_spring.mac"), TIMES[extent], 10.0
-    motion, plain = simulated(rail, until), baseline_motion(rail, until)
-    yield from places_kept(
-        translatable("coordinates at t = %(t)s", t=until), plain, motion, coordinates(mpf(until)), needed
+    motion, baseline = simulated(rail, until), baseline_motion(rail, until)
+    yield from place_digits(
+        translatable("coordinates at t = %(t)s", t=until), baseline, motion, coordinates(mpf(until)), needed
     )
     yield holonom_result(motion.engine, translatable("energy"), digits_of_error(motion.energy_error, ENERGY), needed)
 
@@ -96,5 +96,5 @@ def car_axis(extent: Extent) -> Findings:
     deTestSet for R, which are right to about twelve decimals.
     """
     axis, until, needed = problem("car_axis.mac"), 3, 10.0
-    motion, plain = simulated(axis, until, tol=1e-14), baseline_motion(axis, until)
-    yield from places_kept(translatable("places at t = %(t)s", t=until), plain, motion, PUBLISHED, needed, scale=1)
+    motion, baseline = simulated(axis, until, tol=1e-14), baseline_motion(axis, until)
+    yield from place_digits(translatable("places at t = %(t)s", t=until), baseline, motion, PUBLISHED, needed, scale=1)

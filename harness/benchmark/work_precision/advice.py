@@ -100,8 +100,8 @@ def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
 
 def _falling(measurements: Sequence[Measurement]) -> list[Measurement]:
     """Return measurements with a smaller error than all before them."""
-    kept: list[Measurement] = []
+    frontier: list[Measurement] = []
     for m in measurements:
-        if 0 < m.error < (kept[-1].error if kept else math.inf):
-            kept.append(m)
-    return kept
+        if 0 < m.error < (frontier[-1].error if frontier else math.inf):
+            frontier.append(m)
+    return frontier

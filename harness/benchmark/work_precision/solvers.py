@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ...program.motion_problem import MotionProblem
 
 
-class CompiledRates:
+class RightHandSide:
     """The rates of the state (q, dot q), from a compiled function of t and the state.
 
     Parameters
@@ -67,7 +67,7 @@ class CompiledRates:
         rates[self.coordinates :] = self._found
 
 
-def compiled_rates(problem: MotionProblem) -> CompiledRates:
+def compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
     """Return the motion program of a problem, compiled by the system's C compiler.
 
     Parameters
@@ -85,16 +85,16 @@ def compiled_rates(problem: MotionProblem) -> CompiledRates:
         As `holonom.program.c_function.compile_c`.
     """
     program = acceleration_program(problem)
-    return CompiledRates(compile_c(program).one, len(problem.coordinates), len(program.inputs))
+    return RightHandSide(compile_c(program).one, len(problem.coordinates), len(program.inputs))
 
 
 MOST_STEPS = 10_000_000  # of SUNDIALS, whose own limit of 500 is meant for one output after the other
 
 Floats = NDArray[np.float64]
-Solver = Callable[[CompiledRates, tuple[float, float], Floats, float], Floats]
+Solver = Callable[[RightHandSide, tuple[float, float], Floats, float], Floats]
 
 
-def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
+def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
     """Return the final state by one of the methods of `scipy.integrate.solve_ivp`.
 
     Parameters
@@ -127,7 +127,7 @@ def scipy_solver(method: str, motion: CompiledRates, span: tuple[float, float], 
     return solution.y[:, -1]
 
 
-def sundials_solver(method: str, motion: CompiledRates, span: tuple[float, float], start: Floats, tol: float) -> Floats:
+def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
     """Return the final state by CVODE of SUNDIALS.
 
     Parameters
@@ -193,7 +193,7 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
 
 
 def _prepare(problem: MotionProblem, until: Fraction, solver: Solver, tol: float) -> Prepared:
-    motion, operations = compiled_rates(problem), acceleration_program(problem).operations
+    motion, operations = compiled_right_hand_side(problem), acceleration_program(problem).operations
     span = float(problem.start["t"]), float(until)
     start = np.array([float(problem.start[name]) for name in problem.state])
 

@@ -145,13 +145,13 @@ def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[Motion
     """Return the problem with the requested solve, and with the other one if solvable."""
     digits = plan.most_digits + MORE_DIGITS
     problem = motion_problem(source, request, source.limits, digits)
-    if problem.obstacle is not None:
-        raise HolonomError(ErrorKind.NO_MOTION_PROGRAM, source.file, problem.obstacle)
+    if problem.obstruction is not None:
+        raise HolonomError(ErrorKind.NO_MOTION_PROGRAM, source.file, problem.obstruction)
     require_analytic(problem)
     other = next(solve for solve in Solve if solve is not request.solve)
     by_other = motion_problem(source, replace(request, solve=other), source.limits, digits)
-    if by_other.obstacle is not None:
-        return [problem], [Omission(solve_name(other), "all tolerances", by_other.obstacle)]
+    if by_other.obstruction is not None:
+        return [problem], [Omission(solve_name(other), "all tolerances", by_other.obstruction)]
     return [problem, by_other], []
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from sympy import Expr, Symbol
 
 from ...figures.curves import Panel, draw_curves
-from ...figures.style import lettered
+from ...figures.style import with_symbols
 from ...language import gettext
 from ...number_texts import number, numbers
 from ...record import Equation, Scene
@@ -108,6 +108,6 @@ def beginning(expanded: MotionSeries) -> Panel:
     }
     sums = {name: np.polynomial.polynomial.polyval(times, coefficients[: k + 1]) for name, k in orders.items()}
     return Panel(
-        gettext("%(quantity)s (dimensionless)", quantity=lettered(SHOWN)),
+        gettext("%(quantity)s (dimensionless)", quantity=with_symbols(SHOWN)),
         {name: (times, values) for name, values in sums.items()},
     )

@@ -14,7 +14,7 @@ import sympy
 from sympy import I, Symbol
 
 from ...figures.curves import Panel, draw_curves
-from ...figures.style import lettered_text
+from ...figures.style import text_with_symbols
 from ...language import gettext
 from ...mathjson import from_sympy
 from ...program.model import Model, scene_model
@@ -59,7 +59,7 @@ def page(results: Mapping[str, Any]) -> Page:
         for law, motion in motions.items()
     }
     shown = {law: motion.times for law, motion in motions.items()}
-    titles = {law: lettered_text(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
+    titles = {law: text_with_symbols(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
     multipliers = {titles[law]: (shown[law], motion.multipliers["lambda1"]) for law, motion in motions.items()}
     powers = {titles[law]: (shown[law], balance.power) for law, balance in balances.items()}
     return Page(

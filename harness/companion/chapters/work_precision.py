@@ -54,11 +54,11 @@ def page(results: Mapping[str, Any]) -> Page:
             "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
             "tolerance": TOLERANCE,
             "worst": {
-                cure: {
+                stabilization: {
                     "constraints": max(found.residuals["position"]),
                     "energy": max(abs(found.energy["energy_error"])),
                 }
-                for cure, found in motions.items()
+                for stabilization, found in motions.items()
             },
             "pendulum": motions[Stabilization.NONE],
         },
@@ -91,8 +91,8 @@ def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
     """
     problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
     return {
-        cure: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=cure, until=UNTIL, samples=SAMPLES))
-        for cure in Stabilization
+        each: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=each, until=UNTIL, samples=SAMPLES))
+        for each in Stabilization
     }
 
 

@@ -14,7 +14,7 @@ from ..c_source import (
     HELPERS,
     MANY,
     ONE,
-    Pieces,
+    SourceParts,
     batch_support,
     body_of,
     comment_text,
@@ -167,11 +167,13 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
     )
 
 
-def _function(name: str, arrays: str, program: Program | None, results: Sequence[str], inputs: Sequence[str]) -> Pieces:
+def _function(
+    name: str, arrays: str, program: Program | None, results: Sequence[str], inputs: Sequence[str]
+) -> SourceParts:
     """Return a function's body that computes a program's outputs, perhaps empty."""
     parameters = ", ".join([GIVEN, *(f"double *{array}" for array in arrays.split())])
     if program is None:
-        return Pieces("", body_of((), names_of(parameters)))
+        return SourceParts("", body_of((), names_of(parameters)))
     pieces = in_pieces(program, ONE, inputs, [f"{place} = {{value}};" for place in results], name, parameters)
     return replace(pieces, body=body_of([pieces.body], names_of(parameters)))
 
@@ -246,20 +248,20 @@ def _law(model: Model) -> str:
     return body_of([*found, *statements(model.law, ONE, inputs, results)], ["t", "p", "u"])
 
 
-def _residual(model: Model, function: Callable[..., Pieces]) -> Pieces:
+def _residual(model: Model, function: Callable[..., SourceParts]) -> SourceParts:
     g = range(1, len(model.multipliers) + 1)
     places = {f"residual[{b}]": f"f[{b - 1}]" for b in g} | {f"residual_rate[{b}]": f"rate[{b - 1}]" for b in g}
     return _computed("residual", "f rate", model.constraints, places, function)
 
 
-def _found(name: str, program: Program | None, function: Callable[..., Pieces], array: str) -> Pieces:
+def _found(name: str, program: Program | None, function: Callable[..., SourceParts], array: str) -> SourceParts:
     """Return a function's body that computes a program's outputs into an array."""
     outputs = program.outputs if program else ()
     places = {output: f"{array}[{place}]" for place, output in enumerate(outputs)}
     return _computed(name, array, program, places, function)
 
 
-def _jacobian(model: Model, function: Callable[..., Pieces]) -> Pieces:
+def _jacobian(model: Model, function: Callable[..., SourceParts]) -> SourceParts:
     n = len(model.coordinates)
     outputs = model.constraints.outputs if model.constraints else ()
     entries = (ENTRY.fullmatch(name) for name in outputs)
@@ -270,8 +272,8 @@ def _jacobian(model: Model, function: Callable[..., Pieces]) -> Pieces:
 
 
 def _computed(
-    name: str, arrays: str, program: Program | None, places: Mapping[str, str], function: Callable[..., Pieces]
-) -> Pieces:
+    name: str, arrays: str, program: Program | None, places: Mapping[str, str], function: Callable[..., SourceParts]
+) -> SourceParts:
     """Return a function's body that computes outputs of a program in their places."""
     wanted = program and computing(program, places)
     return function(name, arrays, wanted, [places[output] for output in wanted.outputs] if wanted else ())

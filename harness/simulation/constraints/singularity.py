@@ -70,9 +70,9 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     later, way = t + nominal.time * PROBE / max(1.0, speed), PROBE * min(1.0, speed)
     here = singular_values_at(matrices, t, state)
     moved = np.concatenate([state[:n] + (later - t) * state[n:], state[n:]])
-    kept_rank = rank_of(singular_values_at(matrices, later, moved), max(way**1.5, DEPENDENT))
+    rank_before = rank_of(singular_values_at(matrices, later, moved), max(way**1.5, DEPENDENT))
     try:
-        there = singular_values_at(matrices, later, settle(matrices, later, moved, kept_rank)[0])
+        there = singular_values_at(matrices, later, settle(matrices, later, moved, rank_before)[0])
     except InconsistentConstraints:
         return rank_of(here), np.inf
     rank = max(rank_of(here), rank_of(there, max(way**1.5, DEPENDENT)))

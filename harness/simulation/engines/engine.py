@@ -71,7 +71,7 @@ class Solutions(NamedTuple):
     constraint_forces: Numbers
 
 
-class Obstacle(HolonomError):
+class Obstruction(HolonomError):
     """The reason for which an engine stopped, if another one may continue.
 
     Parameters
@@ -81,7 +81,7 @@ class Obstacle(HolonomError):
     cause : str
         A clause about that time.
     passed : callable
-        Whether the obstacle lies behind a time and a state.
+        Whether the obstruction lies behind a time and a state.
     """
 
     def __init__(self, t: float, case: Difficulty, cause: str, passed: Callable[[Any, Numbers], bool]) -> None:
@@ -183,8 +183,8 @@ class Engine(Protocol):
 
         Raises
         ------
-        Obstacle
-            The engine cannot continue, but another one may. Time and state are those before the obstacle.
+        Obstruction
+            The engine cannot continue, but another one may. Time and state are those before the obstruction.
         HolonomError
             The motion itself ends.
         """
@@ -204,7 +204,7 @@ class Engine(Protocol):
 
         Raises
         ------
-        Obstacle, HolonomError
+        Obstruction, HolonomError
             As `advance`.
         """
 

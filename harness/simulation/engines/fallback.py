@@ -18,7 +18,7 @@ from ..evaluation import Numbers, as_floats
 from ..hard_cases import Difficulty
 from ..request import EngineName
 from .choice import TRIAL, Choice, quicker_engine
-from .engine import Engine, Obstacle, Solutions, Step, Task
+from .engine import Engine, Obstruction, Solutions, Step, Task
 from .registry import DEFAULT, FALLBACK, compared_engines, engine_class
 
 UNCOMPILED = (ErrorKind.COMPILER_UNUSABLE, ErrorKind.COMPILER_REFUSED)
@@ -121,7 +121,7 @@ class FallbackEngine:
         HolonomError
             The motion cannot be continued so far by the engines allowed.
         """
-        deque(self._followed(until, _without_steps), maxlen=0)
+        deque(self._segments_until(until, _without_steps), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
         """Integrate to a time, step by step.
@@ -140,7 +140,7 @@ class FallbackEngine:
         HolonomError
             As `advance`.
         """
-        return self._followed(until, _with_steps)
+        return self._segments_until(until, _with_steps)
 
     def solutions(self, times: Numbers, states: Numbers) -> Solutions:
         """Return the unknowns of the equations of motion, by the engine of those times.
@@ -176,14 +176,14 @@ class FallbackEngine:
     # ---- engines ----
 
     def _first_engine(self, dense: bool | None) -> Engine:
-        obstacle, request = self._task.problem.obstacle, self._task.request
-        chosen = request.engine if not self._automatic else DEFAULT if obstacle is None else FALLBACK
-        if self._task.problem.reacting and (obstacle is not None or chosen == FALLBACK):
-            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is needed: {obstacle or chosen}")
-        if obstacle is not None and engine_class(chosen).fixed_pivots:
-            raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstacle)
+        obstruction, request = self._task.problem.obstruction, self._task.request
+        chosen = request.engine if not self._automatic else DEFAULT if obstruction is None else FALLBACK
+        if self._task.problem.reacting and (obstruction is not None or chosen == FALLBACK):
+            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is needed: {obstruction or chosen}")
+        if obstruction is not None and engine_class(chosen).fixed_pivots:
+            raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
         first = engine_class(chosen).for_motion(self._task)
-        weighs = self._automatic and obstacle is None and request.compact is None and self._in_doubles
+        weighs = self._automatic and obstruction is None and request.compact is None and self._in_doubles
         steps = first.steps_ahead(self._task.end, TRIAL) if weighs and dense is not None else None
         if steps is None or not any(other.comparable(request.tol) for other in compared_engines()[1:]):
             return first
@@ -224,24 +224,24 @@ class FallbackEngine:
 
     # ---- segments ----
 
-    def _followed(self, until: Any, along: Callable[[Engine, Any], Iterator[Step]]) -> Iterator[Step]:
+    def _segments_until(self, until: Any, along: Callable[[Engine, Any], Iterator[Step]]) -> Iterator[Step]:
         while self.time != until:
             try:
                 yield from self._segment(along(self._first, until), lambda: False, *self._why_first)
-            except Obstacle as obstacle:
+            except Obstruction as obstruction:
                 if not (self._automatic and self._in_doubles) or self._task.problem.reacting:
                     raise
-                yield from self._past(obstacle, self._fallback(), until)
+                yield from self._past(obstruction, self._fallback(), until)
 
-    def _past(self, obstacle: Obstacle, second: Engine, until: Any) -> Iterator[Step]:
-        """Yield the motion past an obstacle, or to a time before that."""
+    def _past(self, obstruction: Obstruction, second: Engine, until: Any) -> Iterator[Step]:
+        """Yield the motion past an obstruction, or to a time before that."""
         second.restart(self._first.time, self._first.state.copy())
         self._current = second
 
         def passed() -> bool:
-            return not second.near_singularity and obstacle.passed(second.time, second.state)
+            return not second.near_singularity and obstruction.passed(second.time, second.state)
 
-        yield from self._segment(second.integrate(until), passed, obstacle.case, obstacle.cause)
+        yield from self._segment(second.integrate(until), passed, obstruction.case, obstruction.cause)
         self._first.restart(second.time, second.state)
         self._current = self._first
 
@@ -259,9 +259,9 @@ class FallbackEngine:
     @property
     def _why_first(self) -> tuple[Difficulty | None, str]:
         """The reason for an automatic choice of the robust engine."""
-        if self._task.problem.obstacle is None:
+        if self._task.problem.obstruction is None:
             return None, ""
-        return self._first.case, self._task.problem.obstacle
+        return self._first.case, self._task.problem.obstruction
 
     def _add_segment(self, segment: EngineSegment) -> None:
         """Add a segment, or extend the last one if engine and reason are equal."""

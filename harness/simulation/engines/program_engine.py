@@ -3,7 +3,7 @@
 An integrator takes its steps in blocks, without Python in between. A block whose steps shrink suddenly is undone and
 repeated step by step, with checks: steps shrink in proportion to the distance of a singularity. A singular
 configuration of the constraints is a singularity for the fixed pivots of the motion program, although the motion itself
-is regular there. After an obstacle the next one may be near, so the first steps are checked from the beginning.
+is regular there. After an obstruction the next one may be near, so the first steps are checked from the beginning.
 """
 
 import time
@@ -26,15 +26,15 @@ from ..hard_cases import Difficulty
 from ..inputs import Inputs
 from ..matrices import MotionMatrices
 from ..request import EngineName
-from .engine import Obstacle, Solutions, Step, require_reach
+from .engine import Obstruction, Solutions, Step, require_reach
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
-WATCHED = 32  # steps behind an obstacle
+WATCHED = 32  # steps behind an obstruction
 SHRUNK = 32  # times shorter than the longest: a step that calls for a closer look; 16 occurs in quiet motions
 DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's and Gear's stabilization, times the length of the time span
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
-LOST, KEPT = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
+LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
 
@@ -100,8 +100,8 @@ class ProgramEngine:
         self.precision, self._failed = precision, failed
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem, self._known_matrices = problem, matrices
-        self._obstacle: HolonomError | None = None
-        self._behind_obstacle = False
+        self._obstruction: HolonomError | None = None
+        self._behind_obstruction = False
         self._evaluate: Evaluation | None = None
 
     @property
@@ -134,8 +134,8 @@ class ProgramEngine:
             Coordinates, then velocities.
         """
         self._go_back(time_point, state)
-        self._behind_obstacle = self._obstacle is not None
-        self._usual, self._obstacle = 0.0, None
+        self._behind_obstruction = self._obstruction is not None
+        self._usual, self._obstruction = 0.0, None
 
     def advance(self, until: Any) -> None:
         """Integrate to a time, in the numbers of the precision.
@@ -147,7 +147,7 @@ class ProgramEngine:
 
         Raises
         ------
-        Obstacle
+        Obstruction
             The motion program fails ahead, while pivots may continue. Time and state are those before it does.
         HolonomError
             The motion itself ends.
@@ -168,7 +168,7 @@ class ProgramEngine:
 
         Raises
         ------
-        Obstacle, HolonomError
+        Obstruction, HolonomError
             As `advance`.
         """
         return self._blocks(until, dense=True)
@@ -224,10 +224,10 @@ class ProgramEngine:
 
         The steps include their states if `dense` is true.
         """
-        if self._obstacle is not None:
-            raise self._obstacle
-        if self._behind_obstacle:
-            self._behind_obstacle = False
+        if self._obstruction is not None:
+            raise self._obstruction
+        if self._behind_obstruction:
+            self._behind_obstruction = False
             dense_steps = self._watched(until, dense, WATCHED)
             return self.time == until, dense_steps
         integrator = self._integrator
@@ -266,7 +266,7 @@ class ProgramEngine:
         self.watch.begin(self.time, self.state)
         dense_steps = []
         for _ in range(steps):
-            if self.time == until or self._obstacle is not None:
+            if self.time == until or self._obstruction is not None:
                 break
             dense_steps += self._watched_step(until, dense)
         self._length = self._first_block
@@ -281,28 +281,28 @@ class ProgramEngine:
         if outcome == self._failed:
             self._go_back(time_point, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
-            self._obstacle = self._obstacle_here(Difficulty.OVERFLOW, reason)
+            self._obstruction = self._obstruction_here(Difficulty.OVERFLOW, reason)
             return []
         self._keep_constraints()
         if not self._is_finite:
             self._go_back(time_point, before)
-            self._obstacle = self._obstacle_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
+            self._obstruction = self._obstruction_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
             return []
         self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
-        self._obstacle = self._found_ahead(until)
+        self._obstruction = self._found_ahead(until)
         return dense_steps
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
-        """Return the obstacle ahead, by the constraints and the last step, or None."""
+        """Return the obstruction ahead, by the constraints and the last step, or None."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return self._obstacle_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
+            return self._obstruction_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
         if self.time == until or abs(self._integrator.last_h) >= SHORTER * self._longest:
             return None
         if self._pivots_lose(t, self.state) > LOST:
-            return Obstacle(
-                t, Difficulty.SINGULAR_CONFIGURATION, VANISHING_PIVOT, lambda t, q: self._pivots_lose(t, q) < KEPT
+            return Obstruction(
+                t, Difficulty.SINGULAR_CONFIGURATION, VANISHING_PIVOT, lambda t, q: self._pivots_lose(t, q) < ACCURATE
             )
         if abs(self._integrator.last_h) >= SHORTEST * self._longest:
             return None
@@ -324,10 +324,10 @@ class ProgramEngine:
         error = np.max(np.abs(fixed - chosen), initial=0.0) / np.max(np.abs(chosen), initial=1e-300)
         return float(error) if np.isfinite(error) else np.inf
 
-    def _obstacle_here(self, case: Difficulty, reason: str) -> Obstacle:
-        """Return an obstacle that ends when the constraints become more independent."""
+    def _obstruction_here(self, case: Difficulty, reason: str) -> Obstruction:
+        """Return an obstruction that ends when the constraints become more independent."""
         least = self.watch.least(self.time, self.state)
-        return Obstacle(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
+        return Obstruction(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
 
     def _go_back(self, time_point: Any, state: Numbers) -> None:
         self._integrator.time = time_point

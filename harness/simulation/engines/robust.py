@@ -102,7 +102,7 @@ class RobustEngine:
         """
         tol = task.request.tol
         if task.precision.name != "double":
-            raise HolonomError(ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstacle or "--engine asks for it")
+            raise HolonomError(ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstruction or "--engine asks for it")
         if tol is not None and not TIGHTEST <= tol < 1:
             holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
             raise HolonomError(ErrorKind.TOLERANCE_UNHELD, detail=holds)
@@ -235,11 +235,11 @@ class RobustEngine:
 
         They give the same constraint forces.
         """
-        kept = list(self._independent)
-        if len(kept) == len(multipliers):
+        settled = list(self._independent)
+        if len(settled) == len(multipliers):
             return multipliers
         chosen = np.zeros_like(multipliers)
-        chosen[kept] = np.linalg.lstsq(jacobian[kept].T, forces)[0]
+        chosen[settled] = np.linalg.lstsq(jacobian[settled].T, forces)[0]
         return chosen
 
     @property
@@ -285,19 +285,19 @@ class RobustEngine:
         return np.concatenate([state[self.n :], accelerations])
 
     def _begin(self, t: float, state: Vector) -> None:
-        kept = self._kept(t, state)[0]
-        self._least = self._least_at(t, kept)
+        settled = self._settled(t, state)[0]
+        self._least = self._least_at(t, settled)
         integrator, nominal = Radau if self.stiff else DOP853, self.matrices.nominal
         self._solver: OdeSolver = integrator(
             self._rates,
             t,
-            kept,
+            settled,
             np.inf,
             rtol=self.tol,
             atol=self.tol * nominal.state,
-            first_step=self._first_step(t, kept),
+            first_step=self._first_step(t, settled),
         )
-        self.time, self.state, self._vanishing, self._refused, self._met = t, kept, np.inf, np.inf, np.inf
+        self.time, self.state, self._vanishing, self._failed_at, self._met = t, settled, np.inf, np.inf, np.inf
         self._longest = self._solver.h_abs
 
     def _first_step(self, t: float, state: Vector) -> float:
@@ -319,27 +319,27 @@ class RobustEngine:
     def _move(self, t: float, state: Vector) -> None:
         """Project the result of a step, and continue from there."""
         before, last = self.time, self._least
-        self.state, accelerations = self._kept(t, state)
+        self.state, accelerations = self._settled(t, state)
         self._least = self._least_at(t, self.state)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
         self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
         if t < self._met < self._vanishing:  # where a step that was refused found no accelerations
             self._vanishing = self._met
 
-    def _kept(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
+    def _settled(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
         """Return the nearest state that keeps the constraints, and its accelerations.
 
         Of states, shape (k, 2n), each.
         """
         try:
-            kept, factored = settle(self.matrices, t, state, self.rank)
+            settled, factored = settle(self.matrices, t, state, self.rank)
         except InconsistentConstraints:
             self._require_rank(t, state)
             raise
         if self.rank < len(self._multipliers):
-            self._require_rank(t, kept)
-        at = self.matrices(t, kept)
-        return kept, factored.accelerations(at.force, at.curvature)
+            self._require_rank(t, settled)
+        at = self.matrices(t, settled)
+        return settled, factored.accelerations(at.force, at.curvature)
 
     def _least_at(self, t: float, state: Vector) -> float:
         """Return the least singular value that counts."""
@@ -358,9 +358,9 @@ class RobustEngine:
     def _arc_found(self) -> bool:
         """Look for an arc over the singular configuration ahead, if there is one in reach."""
         ahead = self._vanishing - self.time
-        if ahead > min(REACH * self._solver.h_abs, SHORTER * self._refused):
+        if ahead > min(REACH * self._solver.h_abs, SHORTER * self._failed_at):
             return False
-        self._arc, self._refused = self._arc_over(ahead), ahead
+        self._arc, self._failed_at = self._arc_over(ahead), ahead
         if self._arc is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
             raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
         return self._arc is not None
@@ -379,7 +379,7 @@ class RobustEngine:
             )
             if arc is None or not self._trusted(arc):
                 return None
-            if self._least_at(arc.end, self._kept(arc.end, arc.last)[0]) > CLEAR * self._least:
+            if self._least_at(arc.end, self._settled(arc.end, arc.last)[0]) > CLEAR * self._least:
                 return self._taken(arc)
         return None
 
@@ -419,13 +419,13 @@ class RobustEngine:
         if arc.error(self.matrices.nominal.coordinates) > max(self.tol, ARC_ERROR):
             return False
         try:
-            kept = self._kept(arc.end, arc.last)[0]
+            settled = self._settled(arc.end, arc.last)[0]
         except InconsistentConstraints:
             return False
-        return self.matrices.nominal.share(kept - arc.last, kept) <= OFF_BRANCH
+        return self.matrices.nominal.share(settled - arc.last, settled) <= OFF_BRANCH
 
     def _accelerations(self, times: Vector, states: Matrix) -> Matrix:
-        return self._kept(times, states)[1]
+        return self._settled(times, states)[1]
 
     def _along_arc(self, until: float) -> Step:
         """Take a step along the arc, to its end or to a time."""

@@ -160,7 +160,7 @@ class RungeKuttaEngine(ProgramEngine):
     def advance(self, until: float) -> None:
         """Integrate to a time, in one call of C if possible.
 
-        This is possible for a near time without an obstacle before it.
+        This is possible for a near time without an obstruction before it.
 
         Parameters
         ----------
@@ -169,12 +169,12 @@ class RungeKuttaEngine(ProgramEngine):
 
         Raises
         ------
-        Obstacle, HolonomError
+        Obstruction, HolonomError
             As `ProgramEngine.advance`.
         """
         integrator = self._integrator
         self._set_values()
-        if self._obstacle is None:
+        if self._obstruction is None:
             self.steps += integrator.quiet_steps(until, self._first_block)
             if integrator.time == until:
                 return

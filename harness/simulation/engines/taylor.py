@@ -74,7 +74,9 @@ class TaylorEngine(ProgramEngine):
     ) -> None:
         numbers = read_precision(precision) if isinstance(precision, str) else precision
         super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
-        self._tolerance = {} if tol is None else {"tol": self.precision.number(repr(held(tol, self.precision)))}
+        self._tolerance = (
+            {} if tol is None else {"tol": self.precision.number(repr(checked_tolerance(tol, self.precision)))}
+        )
         self._finer = self._matrices.nominal.absolute()
         if self._finer < 1:
             whole = self._tolerance.get("tol", self.precision.rounding)
@@ -87,9 +89,9 @@ class TaylorEngine(ProgramEngine):
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
         self._set_up(code, self._counted[0], start)
-        kept = stabilization is Stabilization.PROJECTION and problem.multipliers
-        self._keeper = ProgramProjection(problem, self.precision) if kept else None
-        if kept and self._chosen:
+        projects = stabilization is Stabilization.PROJECTION and problem.multipliers
+        self._keeper = ProgramProjection(problem, self.precision) if projects else None
+        if projects and self._chosen:
             self._keeper.nearest  # noqa: B018
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol) / self._finer
@@ -119,7 +121,11 @@ class TaylorEngine(ProgramEngine):
             The precision cannot hold the tolerance, or as for the class.
         """
         problem, request, precision, end, matrices = task
-        digits = precision.digits + GUARD_DIGITS if request.tol is None else -log10(held(request.tol, precision))
+        digits = (
+            precision.digits + GUARD_DIGITS
+            if request.tol is None
+            else -log10(checked_tolerance(request.tol, precision))
+        )
         require_means(at_start(problem), precision, order_for(digits))
         decay = decay_until(end, problem, precision)
         return cls(problem, request.tol, precision, request.stabilization, request.compact, decay, matrices, end)
@@ -343,7 +349,7 @@ def block_within(allowed: float, steps: int, drift: float) -> int:
     return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
 
 
-def held(tol: float, precision: Precision) -> float:
+def checked_tolerance(tol: float, precision: Precision) -> float:
     """Return a tolerance, if the numbers can hold it.
 
     Parameters

@@ -58,7 +58,7 @@ def true_records(files):
         yield TrueRecord(file.stem, json.loads(ask(Document.RECORD, source)), source.description())
 
 
-def held_up(record, true, seed):
+def rejected(record, true, seed):
     """Why `holonom check` would not end with status 0; empty where it would."""
     try:
         report = check_record(read_record(json.dumps(record)), true.description, seed)
@@ -92,7 +92,7 @@ def of_other_scenes(folder, draw, count):
         record = json.loads(ask(Document.RECORD, other))
         true = TrueRecord("", json.loads(ask(Document.RECORD, described)), description)
         if difference(true.record, record):
-            yield RECORD, what, held_up(record, true, what)
+            yield RECORD, what, rejected(record, true, what)
         verdicts = motion_verdicts(description, read_motions(other.description(), ask_for_check(other, {})), what)
         yield MOTION, what, "; ".join(each.detail for each in verdicts if each.verdict is Verdict.DISAGREES)
 
@@ -101,12 +101,12 @@ def main(seed, count):
     """Print what was found of each class, and each wrong record that was not held up."""
     with tempfile.TemporaryDirectory() as folder:
         trues = list(true_records(written(Path(folder))))
-    honest = [why for true in trues if (why := held_up(true.record, true, seed))]
+    honest = [why for true in trues if (why := rejected(true.record, true, seed))]
     print(*(f"true, and held up: {why}" for why in honest), sep="\n", flush=True)
     made, found = Counter(), Counter()
     for wrong in wrong_records(trues, seed, count):
         made[wrong.kind] += 1
-        if held_up(wrong.record, wrong.true, seed):
+        if rejected(wrong.record, wrong.true, seed):
             found[wrong.kind] += 1
         else:
             print(f"missed: {wrong.kind} of {wrong.true.name}: {wrong.difference}", flush=True)

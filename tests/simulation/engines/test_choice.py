@@ -99,8 +99,8 @@ def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
         return simulate(replace(problem("linkage.mac")), wanted).report
 
     ours, theirs = of(EngineName.RUNGE_KUTTA), of(EngineName.TAYLOR)
-    followed = [segment.engine for segment in ours.segments]
-    assert EngineName.ROBUST in followed
-    assert set(followed) == {EngineName.RUNGE_KUTTA, EngineName.ROBUST}
+    engines = [segment.engine for segment in ours.segments]
+    assert EngineName.ROBUST in engines
+    assert set(engines) == {EngineName.RUNGE_KUTTA, EngineName.ROBUST}
     for name, value in theirs.coordinates.items():
         assert ours.coordinates[name] == pytest.approx(value, abs=1e-7)

@@ -1,4 +1,4 @@
-"""What the engines that take the motion program have in common: continuing, pieces, obstacles and ends."""
+"""What the engines that take the motion program have in common: continuing, pieces, obstructions and ends."""
 
 from fractions import Fraction
 from itertools import pairwise
@@ -11,7 +11,7 @@ from holonom.failures import HolonomError
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstacle
+from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstruction
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
 from holonom.simulation.request import EngineName, SimulationRequest
@@ -66,11 +66,11 @@ def test_pieces_join_and_hold_the_states_between(engine):
     assert middle.states(times)[:, 2] == pytest.approx(other.state, abs=10 * CLOSE[engine])
 
 
-def test_an_obstacle_leaves_the_last_good_state(engine):
+def test_an_obstruction_leaves_the_last_good_state(engine):
     """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
     motion = engine(problem("linkage.mac"))
     pieces = []
-    with pytest.raises(Obstacle, match="nears a singular one"):
+    with pytest.raises(Obstruction, match="nears a singular one"):
         pieces.extend(motion.integrate(10.0))
     assert pieces[-1].end == motion.time
     assert np.isfinite(motion.state).all()
@@ -87,7 +87,7 @@ def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_sc
     assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)
 
 
-def test_behind_an_obstacle_the_way_to_the_next_one_was_gone_twice(monkeypatch):
+def test_behind_an_obstruction_the_way_to_the_next_one_was_gone_twice(monkeypatch):
     """A block of steps to the next dead centre shrank until it failed, and was taken back at each of them."""
     taken_back, go_back = [], TaylorEngine._go_back
 

@@ -14,7 +14,7 @@ from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
 
-def followed(**asked):
+def simulated(**asked):
     wanted = SimulationRequest(until=Fraction(20), samples=21, tol=1e-8, **asked)
     return simulate(problem("pendulum.mac", "swing_scene"), wanted)
 
@@ -31,7 +31,7 @@ def test_names_and_choices_are_those_of_the_registry():
 
 def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
     """Truth: the Taylor engine."""
-    motion, truth = followed(), followed(engine=EngineName.TAYLOR)
+    motion, truth = simulated(), simulated(engine=EngineName.TAYLOR)
     report, document = motion.report, simulation_document(motion)
     assert report.choice.engine == document["choice"]["engine"] == "toy"
     assert [segment.engine for segment in report.segments] == ["toy", "robust", "toy"]
@@ -46,4 +46,4 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
 
 def test_added_engine_that_is_asked_for_follows_alone(toy):
     with pytest.raises(HolonomError, match="the toy stops here"):
-        followed(engine="toy")
+        simulated(engine="toy")
