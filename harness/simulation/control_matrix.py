@@ -59,7 +59,7 @@ class ControlMatrix(SignedFunctions):
         self._shape = tuple(max(map(int, numbers)) for numbers in zip(*places, strict=True))
         self._inputs = Inputs(problem, precision)
         self._evaluate = evaluation_once(problem, problem.servo_matrix, precision)
-        self._rows: Vector | None = None  # the rows whose determinant is followed
+        self._matrix_rows: Vector | None = None  # the rows whose determinant is followed
         self._scale: Numbers | float = 1.0  # of each row
 
     def lost(self, step: Step) -> float | None:
@@ -101,7 +101,7 @@ class ControlMatrix(SignedFunctions):
         -------
         ndarray, shape (1, k)
         """
-        return np.linalg.det(self._matrices(times, states)[:, self._rows])[None]
+        return np.linalg.det(self._matrices(times, states)[:, self._matrix_rows])[None]
 
     def _matrices(self, times: Numbers, states: Numbers) -> Numbers:
         found = as_floats(np.array(self._evaluate(self._inputs(times, states))))
@@ -118,7 +118,7 @@ class ControlMatrix(SignedFunctions):
             matrix = np.ones(self._shape)
         sizes = np.max(np.abs(matrix), axis=1, keepdims=True)
         self._scale = np.where(sizes > 0, sizes, 1.0)
-        self._rows = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
+        self._matrix_rows = np.sort(qr((matrix / self._scale).T, mode="r", pivoting=True)[1][: self._shape[1]])
 
     def _first_zero(self, step: Step) -> tuple[float, Step] | None:
         """Return the first zero of the determinant in a step, and the part around it."""
