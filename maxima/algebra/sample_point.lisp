@@ -249,15 +249,32 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
     (if refined (corrected-point refined (make-hash-table)) (newton-iteration close))))
 
 (defun corrected-in-floats (point)
-  (let ((*small-coordinate* *smallest-coordinate*) (before nil)) ; what lands too soon cannot be corrected
+  (let ((*small-coordinate* *smallest-coordinate*) (before nil) (next point)) ; what lands too soon cannot be corrected
     (dotimes (attempt *most-refinements* nil)
-      (let* ((residuals (residuals-at point))
+      (let* ((point next)
+             (residuals (residuals-at point))
              (size (largest-of (cons 0 (mapcar #'abs residuals))))
              (corrections (if (or (null before) (< (* *least-gain* size) before))
                               (corrections-in-floats residuals size point))))
         (cond ((zerop size) (return point))
-              ((null corrections) (return nil))
-              (t (setq before size point (corrected-point point corrections))))))))
+              ((null corrections) (return nil)))
+        (setq before size next (corrected-point point corrections))
+        (if (negligible-p corrections residuals point) (return next))))))
+
+;; Sums within a constraint count as zero before it does: it may miss zero by more than its own share.
+(defun negligible-p (corrections residuals point)
+  "Whether the corrections are rounding errors, and remove the residuals to first order."
+  (and (< (largest-correction corrections) (* *zero-share* (largest-coordinate point)))
+       (let* ((*floating* t)
+              (*zero-share* *zero-share-of-floats*)
+              (rows (catch 'irregular-point (numeric-rows *jacobian* (converted-point point #'float-of)))))
+         (and rows (all-of-p #'identity (mapcar #'(lambda (row residual) (removed-p row corrections residual))
+                                                rows residuals))))))
+
+(defun removed-p (row corrections residual)
+  (let ((terms (mapcar #'(lambda (e) (* (rational (cdr e)) (gethash (car e) corrections 0))) row)))
+    (<= (* *least-gain* (abs (+ residual (sum-of-all terms))))
+        (+ (abs residual) (sum-of-all (mapcar #'abs terms))))))
 
 (defun corrections-in-floats (residuals size point)
   "Newton's corrections of residuals that are at most so large; nil where floating point has none, or none is needed."
