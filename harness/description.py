@@ -195,6 +195,24 @@ class Description:
             content = _with_value(content, name, _number(text), self.file)
         return replace(self, content=content)
 
+    def with_initial_state(self, scene: str, state: Mapping[str, float]) -> "Description":
+        """Return the description with another initial state of a scene.
+
+        Parameters
+        ----------
+        scene : str
+            Name of the scene.
+        state : mapping of str to float
+            Coordinates and velocities by name, exact.
+
+        Returns
+        -------
+        Description
+        """
+        start = {"initial_state": {name: _number(repr(value)) for name, value in state.items()}, "initial_guess": {}}
+        scenes = [each | start if each["name"] == scene else each for each in self.content["scenes"]]
+        return replace(self, content=self.content | {"scenes": scenes})
+
 
 def is_description(text: str) -> bool:
     """Return True for a description, False for a scene file.

@@ -580,6 +580,37 @@ class Scene:
         return find_equilibria(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, controls, **options)
 
     @naming_the_extra()
+    def at_equilibrium(self, name: str) -> "Scene":
+        """Return the scene with an equilibrium as its initial state, at rest.
+
+        Parameters
+        ----------
+        name : str
+            Name of the equilibrium in `equilibria`, for the initial values of the controls.
+
+        Returns
+        -------
+        Scene
+            A new scene.
+
+        Raises
+        ------
+        HolonomError
+            As `equilibria`, or if there is no equilibrium of that name.
+
+        Examples
+        --------
+        >>> scene.at_equilibrium("e1").simulate(until=1, samples=2)["y"].round(9)
+        array([-1., -1.])
+        """
+        from .stability.start import started_at_equilibrium
+
+        other = self.with_settings()
+        other._source = started_at_equilibrium(self._source, self._request(), self.limits, name)
+        other._derived = Derivations(other._source)
+        return other
+
+    @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def branches(self, control: str, values: Sequence[float], options: dict[str, Any], **controls: float) -> "Branches":
         """Search for states at rest over the values of a control.

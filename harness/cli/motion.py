@@ -72,6 +72,7 @@ FAILED = 1  # exit status of a result that is none
 )
 @asks_one_scene(*options_of(Request, "solve"))
 @takes(*options_of(SimulationRequest))
+@click.option("--equilibrium", metavar="NAME", help="Start at rest in an equilibrium, in place of the scene's start.")
 @click.option("--final", is_flag=True, help="Write only the final state to the JSON document.")
 @writes_json
 @click.option(
@@ -95,6 +96,7 @@ def simulate(
     scene_file: Path,
     request: Request,
     options: dict[str, Any],
+    equilibrium: str | None,
     final: bool,
     json_file: Path | None,
     output: Path | None,
@@ -115,6 +117,10 @@ def simulate(
 
     wanted = SimulationRequest(**options)
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
+    if equilibrium is not None:
+        from ..stability.start import started_at_equilibrium
+
+        source = started_at_equilibrium(source, request, limits, equilibrium)
     imports = partial(_import_readers, click.get_current_context().obj is OWN_PROCESS)
     with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))

@@ -218,3 +218,18 @@ X, Y = ring("x, y", QQ, grevlex)[1:]
 )
 def test_distinct_real_zeros_of_two_polynomials(polynomials, count):
     assert _count_real_zeros(groebner(polynomials, X.ring)) == count
+
+
+def test_a_scene_starts_at_rest_in_an_equilibrium_by_name(tmp_path, holonom_here):
+    scene = holonom.system(HOOP, Omega=4)
+    tilted = next(each for each in scene.equilibria() if abs(each.coordinates["phi"] - np.arccos(10 / 16)) < 1e-9)
+    motion = scene.at_equilibrium(tilted.name).simulate(until=1, samples=5)
+    assert motion["phi"] == pytest.approx([np.arccos(10 / 16)] * 5, abs=1e-14)
+    assert motion["dot(phi)"] == pytest.approx([0] * 5, abs=1e-13)
+    file = tmp_path / "hoop.mac"
+    file.write_text('load("holonom.mac")$\n' + HOOP)
+    done = holonom_here("simulate", file, "--set", "Omega=4", "--equilibrium", tilted.name, "--final", "--json", "-")
+    assert json.loads(done.stdout)["coordinates"]["phi"] == pytest.approx(np.arccos(10 / 16), abs=1e-14)
+    with pytest.raises(HolonomError) as error:
+        scene.at_equilibrium("e9")
+    assert error.value.kind is ErrorKind.NO_SUCH_EQUILIBRIUM
