@@ -9,11 +9,13 @@ from ..hidden import visible_line
 from .text import counted, styled
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from rich.console import Console
 
     from ..stability.along import LinearizedMotion
     from ..stability.branches import Branches
-    from ..stability.equilibria import Equilibria
+    from ..stability.equilibria import Equilibria, Equilibrium
     from ..stability.linearization import Linearization
 
 ROUNDING = 1e-9  # share of a size that is shown as zero
@@ -105,6 +107,9 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
         kind = styled(each.stability) if each.isolated else styled(each.stability) + Text(", not isolated")
         table.add_row(each.name, *(f"{each.coordinates[name]:.8g}" for name in names), kind)
     console.print(table)
+    for each in equilibria:
+        if values := list(_exact_values(each)):
+            console.print(f"{each.name} exactly: {', '.join(values)}")
     console.print(_number_of(equilibria))
     if equilibria.more:
         console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
@@ -138,7 +143,18 @@ def show_branches(console: "Console", branches: "Branches") -> None:
         counts = (sum(each.stability is kind for each in found) for kind in kinds)
         table.add_row(f"{found.controls[branches.control]:.8g}", *map(str, counts))
     console.print(table)
-    console.print("Numbers of equilibria found; there may be others.")
+    if all(found.complete for found in branches):
+        console.print("Numbers of equilibria. These are all, at each of these values.")
+    else:
+        console.print("Numbers of equilibria found; there may be others.")
+
+
+def _exact_values(equilibrium: "Equilibrium") -> "Iterator[str]":
+    """Yield the exact values that the table shows rounded, without roots that have no short form."""
+    for name, value in equilibrium.coordinates.items():
+        text = str(equilibrium.exact.get(name, ""))
+        if text not in ("", f"{value:.8g}") and "CRootOf" not in text:
+            yield f"{name} = {text}"
 
 
 def _number_of(equilibria: "Equilibria") -> str:

@@ -14,10 +14,10 @@ Otherwise the stability is undecided.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import scipy.linalg
@@ -32,6 +32,9 @@ from ..simulation.nominal import nominal_of
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized
 from .tangent import Tangent
+
+if TYPE_CHECKING:
+    from sympy import Expr
 
 SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' nominal sizes
 ITERATIONS = 60
@@ -72,6 +75,8 @@ class Equilibrium:
     isolated : bool
         Whether no others are next to it. False where that is not known.
     linearization : Linearization
+    exact : mapping of str to SymPy expression
+        Exact values of coordinates and multipliers, if the equations are polynomial and small.
     """
 
     name: str
@@ -80,6 +85,7 @@ class Equilibrium:
     stability: Stability
     isolated: bool
     linearization: Linearization
+    exact: "Mapping[str, Expr]" = field(default_factory=dict)
 
 
 @dataclass(frozen=True, repr=False)
@@ -163,6 +169,7 @@ class Equilibria(Shown):
                     "name": each.name,
                     "coordinates": dict(each.coordinates),
                     "multipliers": dict(each.multipliers),
+                    "exact": {name: str(value) for name, value in each.exact.items()},
                     "stability": str(each.stability),
                     "isolated": each.isolated,
                     "eigenvalues": [[value.real, value.imag] for value in each.linearization.eigenvalues.tolist()],
@@ -206,7 +213,7 @@ def find_equilibria(
     HolonomError
         The equations contain the time, a control has no value, or the motion is not analytic.
     """
-    from .real_solutions import count_real_solutions
+    from .real_solutions import solve_exactly
 
     require_analytic(problem)
     if equations.changes_with_time:
@@ -217,8 +224,11 @@ def find_equilibria(
     points = search.starts(starts, np.random.default_rng(seed), near)
     found, *left_out = search.equilibria(points, turns)
     names = tuple(equations.coordinates[place] for place in turns)
-    count = count_real_solutions(equations, problem.independent, list(values.values()))
-    return Equilibria(problem.scene, values, starts, found, *left_out, names, count)
+    solutions = solve_exactly(equations, problem.independent, list(values.values()))
+    if solutions is None:
+        return Equilibria(problem.scene, values, starts, found, *left_out, names, None)
+    exact = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
+    return Equilibria(problem.scene, values, starts, exact, *left_out, names, solutions.count)
 
 
 def _constant_controls(

@@ -1,4 +1,4 @@
-"""Exact number of equilibria, if their equations are polynomial and small.
+"""Exact number and values of equilibria, if their equations are polynomial and small.
 
 The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. A coordinate that occurs in
 its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control is the rational
@@ -9,15 +9,20 @@ number that its floating-point value is. From a Groebner basis over the rational
 - The number of distinct real solutions is then the signature of Hermite's form, H_ij = trace of the multiplication by
   b_i b_j, with b the monomials that no leading monomial divides (Cox, Little & O'Shea, Using Algebraic Geometry,
   section 2.5, theorem 5.2).
+- The values of an unknown are roots of the characteristic polynomial of the multiplication by it (section 2.4, theorem
+  4.5 of the same book). The numeric solution chooses one of them.
 """
 
-from collections.abc import Sequence
-from dataclasses import replace
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import cached_property
 from itertools import pairwise, product
 from math import prod
 from typing import Any
 
+import sympy
 from sympy.polys.domains import QQ
 from sympy.polys.groebnertools import groebner
 from sympy.polys.matrices import DomainMatrix
@@ -31,34 +36,102 @@ from .linear_equations import LinearEquations
 
 UNKNOWNS = 10  # larger systems are not tried
 SOLUTIONS = 64  # larger products of the degrees, Bezout's bound of the number of complex solutions, are not tried
+EXACT = 16  # with more complex solutions, values stay numeric
+NEAR = 1e-9  # distance of a numeric value from the exact one
 UNDEFINED = object()  # the value of an expression that is not a polynomial
 ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
 
 
-def count_real_solutions(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
-) -> int | None:
+@dataclass(frozen=True)
+class RealSolutions:
+    """The states at rest for constant controls.
+
+    Attributes
+    ----------
+    count : int
+        Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles.
+    """
+
+    count: int
+    _basis: Sequence[PolyElement] = field(repr=False)
+    _standard: Sequence[tuple[int, ...]] = field(repr=False)
+
+    def exact(self, values: Mapping[str, float]) -> dict[str, sympy.Expr]:
+        """Return the exact values of a solution, as far as they are known.
+
+        Parameters
+        ----------
+        values : mapping of str to float
+            Numeric values of its coordinates and multipliers.
+
+        Returns
+        -------
+        dict of str to SymPy expression
+            Rational numbers, square roots, or roots of irreducible polynomials (``CRootOf``); arc cosines of these for
+            angles. Empty if the equations are large.
+        """
+        found = {name: self._exact(name, value) for name, value in values.items()}
+        return {name: value for name, value in found.items() if value is not None}
+
+    def _exact(self, name: str, value: float) -> sympy.Expr | None:
+        if name in self._roots:
+            return _nearest(self._roots[name], value)
+        cosine = _nearest(self._roots.get(f"cos({name})", ()), math.cos(value))
+        return None if cosine is None else sympy.acos(cosine) * (-1 if math.sin(value) < -NEAR else 1)
+
+    @cached_property
+    def _roots(self) -> Mapping[str, Sequence[sympy.Expr]]:
+        """Real values that each unknown may have."""
+        if len(self._standard) > EXACT:
+            return {}
+        ring = self._basis[0].ring
+        return {str(name): self._values(unknown) for name, unknown in zip(ring.symbols, ring.gens, strict=True)}
+
+    def _values(self, unknown: PolyElement) -> list[sympy.Expr]:
+        images = [(unknown * unknown.ring({m: QQ.one})).rem(self._basis) for m in self._standard]
+        rows = [[each.get(m, QQ.zero) for m in self._standard] for each in images]
+        coefficients = DomainMatrix(rows, (len(rows), len(rows)), QQ).charpoly()
+        _, factors = sympy.Poly(coefficients, sympy.Dummy(), domain=QQ).factor_list()
+        return [root for each, _ in factors for root in _real_roots(each)]
+
+
+def _nearest(roots: Sequence[sympy.Expr], value: float) -> sympy.Expr | None:
+    """Return the only root that is near a value, or None."""
+    near = [root for root in roots if abs(float(root.evalf()) - value) <= NEAR * max(1.0, abs(value))]
+    return near[0] if len(near) == 1 else None
+
+
+def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
+    """Return the real roots of an irreducible polynomial, in radicals if square roots suffice."""
+    radicals = sympy.roots(polynomial, cubics=False, quartics=False, quintics=False, multiple=True)
+    if len(radicals) < polynomial.degree():
+        return polynomial.real_roots()
+    return [root for root in radicals if abs(sympy.im(root.evalf(30))) < NEAR]
+
+
+def solve_exactly(equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]) -> RealSolutions | None:
     """Count the states at rest for constant controls.
 
     Parameters
     ----------
     equations : LinearEquations
         Of the scene.
-    independent : sequence of int
+    kept : sequence of int
         Indices of independent constraints, counted from 0; the multipliers of the others are zero.
     controls : sequence of float
         Constant values, in the order of the equations.
 
     Returns
     -------
-    int or None
-        Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles. None if the
-        equations are not polynomial, or too large, or have infinitely many complex solutions.
+    RealSolutions or None
+        None if the equations are not polynomial, or too large, or have infinitely many complex solutions.
     """
-    polynomials = _equations_at_rest(equations, independent, controls)
+    polynomials = _equations_at_rest(equations, kept, controls)
     if not polynomials or prod(max(map(sum, each.itermonoms())) for each in polynomials) > SOLUTIONS:
         return None
-    return _count_real_zeros(groebner(polynomials, polynomials[0].ring))
+    basis = groebner(polynomials, polynomials[0].ring)
+    standard = _standard_monomials(basis)
+    return None if standard is None else RealSolutions(_count_real_zeros(basis, standard), basis, standard)
 
 
 def _equations_at_rest(
@@ -148,13 +221,13 @@ def _arithmetic(polynomials: PolyRing) -> Arithmetic[Any]:
     return Arithmetic(number, dict.fromkeys(Constant, UNDEFINED), power, known | others)
 
 
-def _count_real_zeros(basis: Sequence[PolyElement]) -> int | None:
-    """Count the distinct real zeros of a Groebner basis.
+def _standard_monomials(basis: Sequence[PolyElement]) -> list[tuple[int, ...]] | None:
+    """Return the monomials that no leading monomial of a Groebner basis divides.
 
-    None if there are infinitely many complex ones, or more than `SOLUTIONS`.
+    None if there are infinitely many, or more than `SOLUTIONS`.
     """
-    polynomials, leading = basis[0].ring, [each.LM for each in basis]
-    powers = [[m[k] for m in leading if m[k] == sum(m)] for k in range(polynomials.ngens)]
+    leading = [each.LM for each in basis]
+    powers = [[m[k] for m in leading if m[k] == sum(m)] for k in range(basis[0].ring.ngens)]
     if not all(powers):
         return None
 
@@ -163,9 +236,12 @@ def _count_real_zeros(basis: Sequence[PolyElement]) -> int | None:
 
     outside = product(*(range(min(each)) for each in powers))
     standard = [m for m in outside if not any(divides(lead, m) for lead in leading)]
-    if len(standard) > SOLUTIONS:
-        return None
-    monomials = [polynomials({m: QQ.one}) for m in standard]
+    return standard if len(standard) <= SOLUTIONS else None
+
+
+def _count_real_zeros(basis: Sequence[PolyElement], standard: Sequence[tuple[int, ...]]) -> int:
+    """Count the distinct real zeros of a Groebner basis."""
+    monomials = [basis[0].ring({m: QQ.one}) for m in standard]
     products = [[(a * b).rem(basis) for b in monomials] for a in monomials]
     traces = {
         m: sum((each.get(n, QQ.zero) for n, each in zip(standard, row, strict=True)), QQ.zero)

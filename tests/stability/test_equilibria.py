@@ -16,7 +16,7 @@ import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
 from holonom.stability.equilibria import Stability
-from holonom.stability.real_solutions import _count_real_zeros
+from holonom.stability.real_solutions import _count_real_zeros, _standard_monomials
 
 START = "initial_state = [{start}], time_span = [0, 1])$\n"
 HOOP = """system : holonomic_system(coordinates = [phi], parameters = [Omega],
@@ -217,7 +217,43 @@ X, Y = ring("x, y", QQ, grevlex)[1:]
     ],
 )
 def test_distinct_real_zeros_of_two_polynomials(polynomials, count):
-    assert _count_real_zeros(groebner(polynomials, X.ring)) == count
+    basis = groebner(polynomials, X.ring)
+    standard = _standard_monomials(basis)
+    assert (None if standard is None else _count_real_zeros(basis, standard)) == count
+
+
+def test_exact_values_of_a_particle_on_a_sphere_are_rational():
+    """At (1, 0, 0) the multiplier is half the stiffness along x, and so on."""
+    potential, radius = "(x^2 + 2*y^2 + 3*z^2)/2", "x^2 + y^2 + z^2 - 1/3"
+    scene = of_particle(f"potential_energy = [V = {potential}], constraints = [{radius}]", "x, y, z")
+    places = {tuple(each.exact[name] ** 2 for name in ("x", "y", "z")): each.exact for each in scene.equilibria()}
+    third = sp.Rational(1, 3)
+    assert {place: exact["lambda1"] for place, exact in places.items()} == {
+        (third, 0, 0): sp.Rational(1, 2),
+        (0, third, 0): 1,
+        (0, 0, third): sp.Rational(3, 2),
+    }
+
+
+def test_exact_angles_beyond_the_fork_are_arc_cosines():
+    found = holonom.system("""system : holonomic_system(coordinates = [phi], kinetic_energy = dot(phi)^2/2,
+  potential_energy = [gravity = -10*cos(phi), turning = -8*sin(phi)^2])$
+s : holonomic_scene(system, initial_state = [phi = 1/2, dot(phi) = 0], time_span = [0, 1])$""").equilibria(starts=40)
+    angle = sp.acos(sp.Rational(5, 8))
+    assert {each.exact["phi"] for each in found} == {0, sp.pi, angle, -angle}
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_exact_values_of_random_potentials_are_their_roots(seed):
+    x, draw = sp.Symbol("x"), random.Random(seed)
+    slope = sp.prod(x**2 - sp.Rational(draw.randint(1, 9), draw.randint(1, 9)) for _ in range(2)) * (
+        x**3 + x - seed - 1
+    )
+    potential = sp.integrate(sp.expand(slope), x)
+    found = holonom.system(LINE.format(str(potential).replace("**", "^"))).equilibria()
+    for each in found:
+        assert sp.simplify(slope.subs(x, each.exact["x"])).evalf(50) == 0
+        assert each.exact["x"].evalf() == pytest.approx(each.coordinates["x"], abs=1e-9)
 
 
 def test_a_scene_starts_at_rest_in_an_equilibrium_by_name(tmp_path, holonom_here):
