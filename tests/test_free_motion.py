@@ -56,6 +56,7 @@ def test_pendulum_trajectory_law_is_the_distance_of_the_parabola():
     assert sympy.expand(found.law["u"] ** 2 - flight) == 0
 
 
+@pytest.mark.long
 def test_bead_series_follows_the_free_slider():
     # free: M x'' = -m (x'' - projected), so the slider is pushed by the bead alone; solved here by sympy's own series
     found = asked("bead", "resting_scene").trajectory

@@ -51,7 +51,8 @@ def made(first_made, cache) -> Path:
     [
         (Document.RECORD, "paper/paper.mac", (None,), {}),
         pytest.param(Document.FREE_MOTION, "pendulum.mac", (None, None), {}, marks=pytest.mark.long),
-        (Document.PROGRAM, "chain.mac", (None, "direct"), {"N": "70"}),  # calls in GCL take 63 arguments
+        # calls in GCL take 63 arguments
+        pytest.param(Document.PROGRAM, "chain.mac", (None, "direct"), {"N": "70"}, marks=pytest.mark.long),
     ],
 )
 def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, document, example, arguments, settings):
@@ -60,6 +61,7 @@ def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, docu
     assert ask(document, EXAMPLES / example, *arguments, settings=settings) == with_image
 
 
+@pytest.mark.long
 def test_image_that_does_not_run_is_made_again(first_made, made, particle_scene, monkeypatch):
     monkeypatch.setattr(maxima, "preloaded_image", lambda *_: made if made.exists() else None)
     monkeypatch.setattr(preloaded, "_saves", lambda saved, *_: shutil.copy(first_made / made.name, saved))

@@ -7,10 +7,14 @@ from rtests import RtestFailed, run_rtest
 
 from holonom.failures import HolonomError
 
-RTESTS = sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
+LONG = ("free_motion", "simplify", "law_ends", "motion_verdict", "regularity", "elimination", "real_laws")
+RTESTS = [
+    pytest.param(file, marks=[pytest.mark.long] if file.stem.removeprefix("rtest_") in LONG else [], id=file.stem)
+    for file in sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
+]
 
 
-@pytest.mark.parametrize("rtest", RTESTS, ids=lambda file: file.stem)
+@pytest.mark.parametrize("rtest", RTESTS)
 def test_rtest(rtest: Path, record_property) -> None:
     try:
         tests = run_rtest(rtest)

@@ -99,7 +99,7 @@ def _entry(entry: EntryText) -> str:
     if entry.system:
         system = ",\n".join(entry.system)
         text += f"{_filled('of a system with')}\n{_shown(system)}"
-    return text + (_errors(entry.lines) if entry.lines else "")
+    return text + (_errors(entry.errors) if entry.errors else "")
 
 
 def _part(part: PartText) -> str:
@@ -107,7 +107,7 @@ def _part(part: PartText) -> str:
     gives = f"\n{_filled('which gives')}\n{_shown(part.gives)}" if part.gives else ""
     return (
         f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('Example:')}\n{_shown(example)}{gives}"
-        f"{_errors(part.lines)}"
+        f"{_errors(part.errors)}"
     )
 
 

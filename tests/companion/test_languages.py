@@ -133,6 +133,7 @@ def names() -> set[str]:
     return {word for text in texts for word in WORD.findall(text)}
 
 
+@pytest.mark.long
 def test_no_prose_of_the_book_and_the_manual_stands_outside_of_the_catalogs(bracketed):
     found = {}
     for page in (*bracketed.glob("book/*.html"), *bracketed.glob("manual/*.html")):

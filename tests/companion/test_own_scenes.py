@@ -1,6 +1,7 @@
 """`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
 
 import pages
+import pytest
 from confinement import without_notice
 from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 
@@ -88,6 +89,7 @@ def test_a_directory_with_other_things_in_it_is_left_alone(tmp_path):
     assert (directory / "thesis.txt").read_text() == "years of work"
 
 
+@pytest.mark.long
 def test_of_a_companion_what_was_written_is_replaced_and_the_rest_stays(tmp_path):
     assert made(tmp_path, {"own": UNCONSTRAINED, "other": UNCONSTRAINED})[0].return_value == 0
     assert (tmp_path / "pages" / "2-other-the-system.html").exists()

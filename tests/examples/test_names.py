@@ -99,14 +99,8 @@ def documents(text: str, directory: Path, writers: tuple[str, ...]) -> list[obje
     return found
 
 
-@pytest.mark.parametrize(
-    ("order", "writers"),
-    [
-        ("before", WRITERS[:3]),
-        pytest.param("before", WRITERS[3:], marks=pytest.mark.long),
-        pytest.param("after", WRITERS, marks=pytest.mark.long),
-    ],
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("order", "writers"), [("before", WRITERS[:3]), ("before", WRITERS[3:]), ("after", WRITERS)])
 def test_a_scene_may_define_every_name_of_the_library(order, writers, internal_names: list[str], tmp_path: Path):
     taken = "".join(TAKEN.format(name=name) for name in internal_names)
     scene = f"{taken}{HOLONOM}{BALL}" if order == "before" else f"{HOLONOM}{taken}{BALL}"

@@ -69,6 +69,7 @@ def newton_euler(end: float) -> tuple[np.ndarray, np.ndarray]:
     return R @ arm + [np.sin(2 * end) / 10, 0, 0], R
 
 
+@pytest.mark.long
 def test_the_top_on_a_moving_support_follows_newton_and_euler():
     motion = simulated("heavy_top")
     centre, R = newton_euler(5.0)
@@ -177,6 +178,7 @@ def scene(request) -> holonom.Scene:
     return holonom.system(FREE_BODY) if free else holonom.load(EXAMPLES / f"{request.param}.mac")
 
 
+@pytest.mark.long
 def test_every_question_is_answered_where_the_mass_matrix_is_singular(scene):
     report = scene.check()
     assert not report.disagreements

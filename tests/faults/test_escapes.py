@@ -214,6 +214,7 @@ def test_daemon_ends_with_the_run(trust, tmp_path):
     assert soon(lambda: not living(mark))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("trust", [pytest.param("--sandbox", marks=needs_sandbox), "--trust"])
 def test_deep_directories_leave_nothing_and_break_no_later_command(trust, tmp_path):
     temporary = tmp_path / "temporary"
@@ -353,6 +354,7 @@ def test_memory_that_no_limit_counts_is_refused(way, tmp_path):
     assert said(tmp_path / "scn", f"cp {program} deed2; chmod +x deed2; ./deed2", limits) == f"{errno.EPERM}/"
 
 
+@pytest.mark.long
 @needs_sandbox
 def test_process_that_has_ended_hides_no_files_from_the_count(tmp_path):
     zombie = "if (!fork) { if (!fork) { exit if !fork; sleep 100 } sleep 100 } sleep 1; "

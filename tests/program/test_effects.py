@@ -35,7 +35,6 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 SPHERICAL = EXAMPLES / "spherical_pendulum.mac"
 OPTIONAL = ("support_motion", "frame_rotation", "gravity", "drag")
 SUBSETS = tuple(chain.from_iterable(combinations(OPTIONAL, size) for size in range(len(OPTIONAL) + 1)))
-AT_THE_ENDS = (0, 1, len(OPTIONAL))  # sizes of subsets that the short suite asks for
 
 SYSTEM = """
 load("holonom.mac")$
@@ -154,11 +153,8 @@ def refusal_of(file, *options):
     return said
 
 
-@pytest.mark.parametrize(
-    "called",
-    [pytest.param(each, marks=[] if len(each) in AT_THE_ENDS else [pytest.mark.long]) for each in SUBSETS],
-    ids=lambda called: "+".join(called) or "none",
-)
+@pytest.mark.long
+@pytest.mark.parametrize("called", SUBSETS, ids=lambda called: "+".join(called) or "none")
 def test_every_subset_of_effects_is_checked(called, write_scene):
     file = write_scene(spherical_scene(called))
     record = derived_record(file)
@@ -228,6 +224,7 @@ def test_switches_are_as_if_one_or_zero_were_written(called, write_scene):
     assert check_record(derived_record(file), describe(file)).disagreements == 0
 
 
+@pytest.mark.long
 def test_a_pair_of_switches_costs_what_both_add_beyond_each(write_scene):
     pair = ("support_motion", "frame_rotation")
     found = [costs_of(write_scene(spherical_scene(called))) for called in ((), pair[:1], pair[1:], pair)]
@@ -286,6 +283,7 @@ def test_the_table_shows_every_term_and_effect():
         assert said in result.stdout
 
 
+@pytest.mark.long
 def test_a_file_without_scenes_has_all_its_effects(write_scene):
     costs = costs_of(write_scene(system_text("coupled masses", effects_of("coupled masses"))), "--set", "m=2")
     assert costs["scene"] is None

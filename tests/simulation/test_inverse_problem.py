@@ -50,6 +50,7 @@ def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
     )
 
 
+@pytest.mark.long
 def test_course_of_a_thrown_bob_makes_the_motion_free():
     scene = holonom.system(BOB.format(course="-2 - 5*t^2", speed=3))
     motion = scene.simulate(samples=5)
@@ -104,6 +105,7 @@ def platform(times):
     return np.array(lengths).T, np.array(pushes).T
 
 
+@pytest.mark.long
 def test_stewart_platform_has_the_lengths_and_pushes_of_its_legs():
     motion = holonom.load(EXAMPLES / "stewart_platform.mac").simulate(samples=7)
     lengths, pushes = platform(motion.times)
@@ -171,6 +173,7 @@ led : holonomic_scene(system, servo_constraints = [x = {course}], initial_state 
 GUESS = "x = 1/2, u = 1/2, dot(x) = 0, dot(u) = 0"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ["auto", "robust"])
 @pytest.mark.parametrize(("course", "end"), [("cos(t - 1)", 1), ("1/2 + t/4", 2)])
 def test_motion_ends_at_a_dead_centre_with_its_time(course, end, engine):

@@ -98,6 +98,7 @@ def test_the_start_on_the_circle_follows_its_radius_and_its_rate(problem):
     assert starts.states[3] == pytest.approx((l0 * v - 0.01) / y, rel=1e-13, abs=1e-14)
 
 
+@pytest.mark.long
 def test_a_circle_too_small_for_its_data_has_no_start_and_leaves_the_others_theirs(problem):
     l0 = np.array([0.05, 1.0, 0.0, 2.0])
     starts = InitialStates(problem)(np.array([l0, np.ones(4), np.zeros(4)]))

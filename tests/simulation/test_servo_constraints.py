@@ -87,6 +87,7 @@ def values(formulas, times):
     return np.array([np.broadcast_to(row, len(times)) for row in sp.lambdify(T, formulas)(times)])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_crane_whose_load_follows_a_line_is_flat(engine, c_compiler):
     """The rope points along the load's acceleration less gravity, which gives angle, tension and both forces."""
@@ -125,6 +126,7 @@ def test_a_crane_was_refused(course):
     assert [segment.engine for segment in motion.report.segments] == ["taylor"]
 
 
+@pytest.mark.long
 def test_a_rope_that_would_have_to_push_ends_the_motion_in_one_sentence():
     """It lies level where the course falls as a stone does, X'^2 + X X'' = -g/2; that was LinAlgError."""
     course = "hook[1] = t^2*(3 - 2*t), hook[2] = hook[1]^2 - 3"
@@ -136,6 +138,7 @@ def test_a_rope_that_would_have_to_push_ends_the_motion_in_one_sentence():
     assert float(re.search(r"t = ([\d.]+\d)", str(ended.value))[1]) == pytest.approx(falls, abs=1e-3)
 
 
+@pytest.mark.long
 def test_a_crane_in_space_needs_two_outputs_more():
     """Rope and load in a plane at any angle to the rails: x and y share what the plane's trolley does."""
     scene = holonom.system("""

@@ -129,6 +129,7 @@ def test_a_push_by_a_bessel_function_in_quadruple_precision(write_scene: WRITE):
         assert abs(mpmath.mpf(str(report.coordinates["y"])) - mpmath.besseli(1, 10)) < 1e-26
 
 
+@pytest.mark.long
 def test_the_series_are_the_functions_own(write_scene: WRITE):
     series = compute_series(write_scene(pushed()), SeriesRequest(order=12, digits=20), Limits())
     with mpmath.workdps(40):
@@ -184,7 +185,8 @@ def test_no_exact_series_is_given(write_scene: WRITE):
         compute_series(write_scene(pushed()), SeriesRequest(order=10, digits="exact"), Limits())
 
 
-@pytest.mark.parametrize("order", ["2/3", pytest.param("2", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("order", ["2/3", "2"])
 def test_sympy_finds_no_disagreement(write_scene: WRITE, order: str):
     """mpmath takes Y of an integer order as a limit, which is slow."""
     report = holonom.load(write_scene(MIXED.replace("bessel_y(2,", f"bessel_y({order},"))).check()

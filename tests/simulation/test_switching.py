@@ -157,6 +157,7 @@ def test_a_pulse_in_a_part_that_would_grow_later_was_skipped(engine):
     assert report.velocities["dot(x)"] == pytest.approx(1 / 41 + math.sqrt(math.pi) / 5000, rel=DIGITS[engine])
 
 
+@pytest.mark.long
 def test_a_pulse_beside_faint_oscillations_was_skipped():
     """Steps at a tolerance of 1e-9 do not follow the oscillations."""
     report = end_of(mass("exp(-((t - 1/3)*20000)^2) + sin(400000*t)/10^9", end="1"), EngineName.RUNGE_KUTTA, tol=1e-9)

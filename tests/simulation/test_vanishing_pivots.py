@@ -63,6 +63,7 @@ def crank():
     return solve_ivp(rate, (0, 3), [1.0], rtol=1e-11, atol=1e-11).y[0, -1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("options", [{}, {"solve": "orthogonal"}, {"engine": "robust"}])
 @pytest.mark.parametrize("constraints", [CLOSURE, TURNED], ids=["closure", "turned"])
 def test_four_bar_with_a_massless_angle_turns_through_every_position(constraints, options):

@@ -78,6 +78,7 @@ def scenes(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 def test_what_turns_within_one_step_ended_rows_late_and_had_another_largest_value(rows_of, scenes):
     """A body thrown is one step of the engine for all of its way; x = t."""
     ended = columns(rows_of(scenes / "turning.mac", "final", "g=9:10:2").table(0, 2))
@@ -128,6 +129,7 @@ def test_the_oscillator_is_the_cosine(rows_of, scenes):
     assert (found["status"] == Status.OK).all()
 
 
+@pytest.mark.long
 def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
     asked = ("crane.mac", "final,max(abs(lambda1)),zero(x-s),mean(y)", "m=50:500:7", "c=0:40:11")
     whole = rows_of(*asked).table(0, 77)
@@ -156,6 +158,7 @@ def test_a_narrow_pulse_in_the_time_span_takes_its_row_out_of_the_batch(rows_of,
     assert time_watch.TimeWatch(problem, 3.0).look(np.array([[1.0, 5.0]]))[0].tolist() == [True, False]
 
 
+@pytest.mark.long
 def test_rows_are_those_of_single_simulations(rows_of):
     keep = "final,lambda1,max(abs(lambda1)),min(y),zero(x-1)"
     found = columns(rows_of("crane.mac", keep, "m=50:500:4", "c=0:40:3").table(0, 12))
@@ -179,6 +182,7 @@ def peak(samples: np.ndarray) -> float:
     return at + (after - before) ** 2 / (8 * (2 * at - before - after))
 
 
+@pytest.mark.long
 def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
     found = columns(rows_of(scenes / "hanging.mac", "final", "l=0:2:5", "m=0:1:2").table(0, 10))
     expected = np.where(found["l"] < 0.5, "no start", np.where(found["m"] == 0, "broken off", "ok"))
@@ -314,6 +318,7 @@ def test_an_time_outside_of_the_motion_is_refused(rows_of, scenes, item):
         rows_of(scenes / "oscillator.mac", item, "k=4:25:22", "m=1:4:4")
 
 
+@pytest.mark.long
 def test_motions_under_the_exponential_law_are_free_and_others_are_not(rows_of):
     free = columns(rows_of("paper/paper.mac", "free", "u0=1/4:1:4", scene="free_motion_scene", until=2).table(0, 4))
     bound = columns(rows_of("paper/paper.mac", "free", "u0=1/4:1:4", scene="initial_motion_scene", until=2).table(0, 4))
@@ -361,6 +366,7 @@ fall : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 
     assert (rows["radius"] == np.inf).all()
 
 
+@pytest.mark.long
 def test_outputs_of_the_scene_are_kept_in_batches_and_singly(rows_of, scenes):
     """The tension of a pendulum of length 1 is m v^2 - m g y; friction, followed singly, brakes with mu to the stop."""
     file = scenes / "observed.mac"

@@ -84,6 +84,7 @@ def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
     assert 0 < reference.difference < 1e-45
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("c_compiler")
 def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
     problem = problems[0]

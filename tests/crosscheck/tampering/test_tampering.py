@@ -33,6 +33,7 @@ def test_wrong_records_of_some_classes_are_held_up(trues):
     require_found(trues, random.Random(SEED).sample(sorted(CLASSES), SOME))
 
 
+@pytest.mark.long
 def test_records_and_motions_of_some_other_scenes_are_held_up(tmp_path):
     found = list(of_other_scenes(tmp_path, random.Random(SEED), 3))
     assert [(kind, what) for kind, what, why in found if not why] == []

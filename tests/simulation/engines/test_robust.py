@@ -200,6 +200,7 @@ upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
 """
 
 
+@pytest.mark.long
 def test_a_near_miss_is_no_singularity(write_scene):
     asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
     motion, conditions = RobustEngine(asked, 1e-11), []
@@ -212,6 +213,7 @@ def test_a_near_miss_is_no_singularity(write_scene):
     assert motion.singular_times == []
 
 
+@pytest.mark.long
 def test_a_length_that_vanishes_stops_the_motion():
     motion = RobustEngine(problem("hard/vanishing_length.mac"))
     with pytest.raises(HolonomError, match="steps become too short") as refused:
