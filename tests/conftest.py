@@ -39,7 +39,7 @@ settings.load_profile("patient")
 ScenesWriter = Callable[[str], Path]
 # Fixtures that take long, and are made once: the group of all tests that ask for them.
 MADE_ONCE = {"results": "companion", "browser": "companion", "printed_equations": "errata"}
-LONG = "results"  # the fixture that takes minutes: all tests that ask for it are long
+LONG = {"results", "objects", "programs"}  # fixtures that take long, and with them all tests that ask for them
 LONGEST = (
     "companion",
     "test_rtests",
@@ -170,7 +170,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     sizes = Counter(groups.values())
     for item, group in groups.items():
         item.add_marker(pytest.mark.xdist_group(group))
-        if LONG in item.fixturenames:
+        if LONG.intersection(item.fixturenames):
             item.add_marker(pytest.mark.long)
     items.sort(key=lambda item: (_rank(groups[item]), -sizes[groups[item]], groups[item]))
 

@@ -176,6 +176,7 @@ def test_a_scene_may_stand_on_standard_input(particle_scene):
     assert json.loads(done.stdout) == json.loads(holonom("derive", particle_scene, "--json", "-").stdout)
 
 
+@pytest.mark.long
 def test_check_named_a_temporary_file_for_what_stands_on_standard_input(particle_scene):
     text = particle_scene.read_text()
     assert json.loads(holonom("check", "-", "--json", "-", input=text).stdout)["scene"] == "-"
@@ -250,6 +251,7 @@ def test_advice_names_no_option_that_the_command_lacks(kind):
     assert error.message({"--until", "--time-limit", "--engine", "--stabilization", "--precision"}).endswith(".")
 
 
+@pytest.mark.long
 def test_check_and_derive_were_silent_about_equations_that_are_not_made(holonom_here):
     chain = str(EXAMPLES / "chain.mac")
     report = json.loads(holonom_here("check", chain, "--json", "-").stdout)

@@ -19,7 +19,7 @@ from holonom.source import Source, describe
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 FILES = sorted(file for file in EXAMPLES.rglob("*.mac") if file.name not in ("printed.mac", "by_hand.mac"))
-SLOW = {"overhead_crane", "stewart_platform"}
+SHORT = {"arm", "hoist", "paper"}
 SWITCHED = """
 load("holonom.mac")$
 assume(m > 0)$ declare(n, integer)$ closed_form_size : 77$
@@ -53,7 +53,7 @@ def kept(description: Description, folder: Path) -> Path:
 
 @pytest.mark.parametrize(
     "file",
-    [pytest.param(file, id=file.stem, marks=[pytest.mark.long] if file.stem in SLOW else []) for file in FILES],
+    [pytest.param(file, id=file.stem, marks=[] if file.stem in SHORT else [pytest.mark.long]) for file in FILES],
 )
 def test_a_description_describes_the_same_again(file, tmp_path):
     description = describe(file)

@@ -323,6 +323,7 @@ turning : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 1], initial
         assert abs(y - mpmath.sin(2 / mpmath.sqrt(3) - mpmath.pi / 3)) < mpmath.mpf("1e-77")
 
 
+@pytest.mark.long
 def test_quadruple_precision_agrees_with_fifty_digits():
     reports = [
         final(problem("pendulum.mac", "lengthening_scene", digits), precision=precision, until=Fraction(3, 2))
@@ -465,6 +466,7 @@ motion : holonomic_scene(system, servo_constraints = [x - b*t^2], parameter_valu
         assert scene.simulate(samples=2)["x"][-1] == pytest.approx(2)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["euler", "all", "local", "coordinates", "exact", "block"])
 def test_name_of_maxima_may_name_a_coordinate_and_a_parameter(name):
     scene = holonom.system(f"""
