@@ -23,7 +23,11 @@ from .outputs import STANDARD_OUTPUT, OutputFile
 
 
 @holonom.command(
-    examples=["series examples/pendulum.mac --order 40", "series examples/pendulum.mac --order 8 --exact --at 1/10"]
+    examples=[
+        "series examples/pendulum.mac --order 40",
+        "series examples/paper/paper.mac --order 8 --exact --at 1/10",
+        "series examples/paper/paper.mac --order 3 --sensitivity u0,q1",
+    ]
 )
 @asks_one_scene()
 @takes(*options_of(SeriesRequest, "order", "precision", "until", "sensitivities"))

@@ -133,7 +133,12 @@ def free(
 
 
 def series(
-    file: Path, scene: str | None, order: int, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
+    file: Path,
+    scene: str | None,
+    order: int,
+    settings: Settings = NO_SETTINGS,
+    limits: Limits = DEFAULT_LIMITS,
+    sensitivities: tuple[str, ...] = (),
 ) -> Run:
     """Return the power series of a scene's motion: a `MotionSeries`.
 
@@ -149,13 +154,15 @@ def series(
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
+    sensitivities : tuple of str
+        Parameters and initial values that the series is also differentiated by.
 
     Returns
     -------
     Run
         Run with the result `MotionSeries`.
     """
-    return Run(_series, (file, scene, order, settings, limits))
+    return Run(_series, (file, scene, order, settings, limits, sensitivities))
 
 
 def simulation(
@@ -244,8 +251,11 @@ def _free(file: Path, scene: str | None, settings: Settings, limits: Limits) -> 
     return free_motion(file, scene, dict(settings), limits)
 
 
-def _series(file: Path, scene: str | None, order: int, settings: Settings, limits: Limits) -> MotionSeries:
-    motion = compute_series(file, SeriesRequest(order, scene, settings=dict(settings)), limits)
+def _series(
+    file: Path, scene: str | None, order: int, settings: Settings, limits: Limits, sensitivities: tuple[str, ...] = ()
+) -> MotionSeries:
+    request = SeriesRequest(order, scene, settings=dict(settings), sensitivities=sensitivities)
+    motion = compute_series(file, request, limits)
     motion.radius  # noqa: B018
     return motion
 

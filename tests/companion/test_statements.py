@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pages
 import pytest
-from sympy import Symbol, simplify
+from sympy import Rational, Symbol, simplify
 
 from holonom.companion.chapters import (
     equations_of_motion,
@@ -53,7 +53,15 @@ def multipliers(motion) -> np.ndarray:
     return np.abs(motion.multipliers["lambda1"])
 
 
+def slope_of_the_first_multiplier(found, content) -> bool:
+    """lambda1 at the start as a function of u0, differentiated with pencil."""
+    u = Symbol("u")
+    multiplier = (-3 * u + (1 - u) / 3) / (1 + 2 * u**2)
+    return multiplier.diff(u).subs(u, Rational(3, 10)) == Rational(content["slope"])
+
+
 STATEMENTS = [
+    Statement(initial_motion, "is the same number", slope_of_the_first_multiplier),
     Statement(
         equations_of_motion,
         "no reaction acts along",

@@ -29,6 +29,7 @@ RUNS = {
     "bob": derived(BOB),
     "printed": printed(),
     "expanded": series(PAPER, INITIAL_SCENE, HIGH_ORDER),
+    "varied": series(PAPER, INITIAL_SCENE, LOW_ORDER, sensitivities=("u0",)),
 }
 
 
@@ -57,6 +58,7 @@ def page(results: Mapping[str, Any]) -> Page:
             "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
             "bob_accelerations": bob_equations["initial_accelerations"],
             "bob_numbers": _numeric_values(bob_equations["initial_accelerations"], bob_scene),
+            "slope": Fraction(results["varied"].sensitivities["d(lambda1, u0)"][0]),
             "time": TIME,
             "orders": (LOW_ORDER, HIGH_ORDER),
             "compared": _compared(results["expanded"]),
