@@ -20,6 +20,7 @@ from .excerpts import excerpt
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
+NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
 MACROS = ("cards.html", "answers.html", "motions.html", "tables.html")
@@ -60,6 +61,7 @@ def environment(language: str) -> jinja2.Environment:
         "rounded": _rounded,
         "power_of_ten": _power_of_ten,
         "with_code": _with_code,
+        "css_string": _css_string,
         "counted": _counted,
         "translated": translated,
         "continued": _continued,
@@ -204,6 +206,11 @@ def _power_of_ten(value: float) -> Markup:
         return mathematics.tex("0")
     digit, exponent = f"{value:.0e}".split("e")
     return mathematics.tex(rf"{digit} \times 10^{{{int(exponent)}}}")
+
+
+def _css_string(text: str) -> Markup:
+    """Return a string of a style sheet. The space ends an escape."""
+    return Markup('"{}"').format(Markup(NOT_OF_A_WORD.sub(lambda found: rf"\{ord(found[0]):x} ", text)))
 
 
 def _with_code(text: str) -> Markup:

@@ -60,7 +60,7 @@ def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
         _arrow(axes, q, ARROW * normal, GREEN, 2.2)
         _label(axes, q + 1.12 * ARROW * normal, gettext("reaction λ ∂f/∂q"), GREEN, "left")
         axes.plot(*_seen(q), "o", color=VERMILION, markersize=9)
-        _label(axes, q + np.array([0.0, 0.25, -0.1]), gettext("particle"), INK, "left")
+        _label(axes, q + np.array([0.0, 0.25, 0.2]), gettext("particle"), INK, "left")
         axes.set_aspect("equal")
         axes.margins(0.08)
         axes.set_xlim(right=axes.get_xlim()[1] + ROOM)

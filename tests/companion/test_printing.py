@@ -6,6 +6,7 @@ import shutil
 import pytest
 from pypdf import PdfReader
 
+from holonom.companion.pages import environment
 from holonom.companion.printing import BROWSERS, one_document, print_site
 
 pytestmark = pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="nothing was printed: no browser")
@@ -48,6 +49,13 @@ def test_links_stay_inside(document):
 def test_the_outline_has_every_chapter(printed, chapters):
     titles = {joined(entry.title) for entry in printed.outline if not isinstance(entry, list)}
     assert {joined(title) for title in chapters.values()} <= titles
+
+
+@pytest.mark.parametrize("title", ["2 Equations of motion", "自由运动", 'd\'Alembert <"principle">'])
+def test_a_title_is_a_string_of_a_style_sheet(title):
+    written = environment("en").from_string("{{ title | css_string }}").render(title=title)
+    assert re.fullmatch(r'"([^"\\<]|\\[0-9a-f]+ )*"', written)
+    assert re.sub(r"\\([0-9a-f]+) ", lambda found: chr(int(found[1], 16)), written[1:-1]) == title
 
 
 @pytest.mark.long

@@ -25,7 +25,7 @@ def browser(tmp_path_factory):
 def seen(request, browser, companion, own):
     """What is met on every page, in one of the views; screenshots are kept."""
     view = request.param
-    folder = SCREENSHOTS / str(view).replace(" ", "-")
+    folder = SCREENSHOTS / str(view).replace(", ", "-")
     shutil.rmtree(folder, ignore_errors=True)
     observations = []
     for book in (companion, own):

@@ -27,8 +27,7 @@ class View:
         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": self.medium, "features": colours})
 
 
-# Widths and colours are independent of each other: each of both is looked at once.
-PHONE = View("phone in the dark", 360, 740, mobile=True, colours="dark")
-DESK = View("desk", 1280, 900)
+PHONE, PHONE_IN_THE_DARK = (View(f"phone, {colours}", 360, 740, True, colours) for colours in ("light", "dark"))
+DESK, DESK_IN_THE_DARK = (View(f"desk, {colours}", 1280, 900, colours=colours) for colours in ("light", "dark"))
 PAPER = View("paper", 680, 960, medium="print")  # what A4 leaves between margins of 15 mm
-VIEWS = (PHONE, DESK, PAPER)
+VIEWS = (PHONE, PHONE_IN_THE_DARK, DESK, DESK_IN_THE_DARK, PAPER)
