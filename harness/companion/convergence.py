@@ -70,7 +70,7 @@ def draw_partial_sums(name: str, coefficients: Sequence[float], radius: Radius, 
         SVG document.
     """
     with figure_style():
-        figure = new_figure(8, 6)
+        figure = new_figure(6, 5)
         curves, errors = figure.subplots(2, 1, sharex=True)
         curves.plot(times, motion, color=INK, linewidth=3, alpha=0.5, label=gettext("motion"))
         for order, colour, line in zip(ORDERS, PALETTE, (*LINES, "-"), strict=False):
@@ -146,8 +146,8 @@ def draw_radius(found: RadiiFound, file: Path) -> None:
         Matplotlib is not installed, or the file cannot be written.
     """
     with figure_style():
-        figure = new_figure(10, 5)
-        radii, plane = figure.subplots(1, 2)
+        figure = new_figure(6, 9)
+        radii, plane = figure.subplots(2, 1)
         _draw_radii(radii, *found)
         _draw_singularities(plane, found.controls, found.fine)
         write_figure(figure, file)

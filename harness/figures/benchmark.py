@@ -109,7 +109,7 @@ def _time_of_series(study: "Study") -> float:
     return float(next((m.time for m in study.measurements if m.group is Group.SERIES), study.until))
 
 
-WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 8.0, 0.2, 3.2, 1.4  # inches
+WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 6.5, 0.2, 3.2, 1.4  # inches
 MOST_DIGITS = 16.5
 
 
@@ -161,7 +161,7 @@ def _draw_digits(axes: "Axes", rows: Sequence[Result | str]) -> None:
     axes.tick_params(axis="y", length=0)
     axes.grid(False, axis="y")
     axes.set(xlim=(0, MOST_DIGITS), xticks=range(0, 17, 2), ylim=(len(rows) - 0.5, -0.5))
-    axes.set_xlabel(gettext("correct decimal digits: a dot has the required ones, a cross has not"))
+    axes.set_xlabel(gettext("correct decimal digits: a dot has the required ones, a cross has not"), loc="right")
 
 
 def _draw_sweep(axes: "Axes", sweep: Sweep) -> None:

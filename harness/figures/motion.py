@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..simulation.result import Simulation
 
 
-WIDTH, HEIGHT_OF_PANEL = 9.0, 3.2  # inches
+WIDTH, HEIGHT_OF_PANEL = 6.5, 2.8  # inches
 UNLIKE = 30.0  # how many times larger a curve is that leaves another one flat
 NOTHING = 1e-9  # size of a curve that is rounding alone
 IN_A_COLUMN = 12  # curves in a column of a legend
@@ -132,7 +132,7 @@ def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 
 
-HEIGHT_OF_WAYS = 4.8  # inches
+HEIGHT_OF_WAYS = 3.6  # inches
 
 
 def draw_with_and_without(present: "Simulation", absent: "Simulation", across: str, along: str) -> str:
