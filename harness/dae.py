@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .program.motion_problem import MotionProblem, require_analytic
+from .program.motion_problem import MotionProblem, require_analytic, require_laws
 from .program.request import Index
 from .stability.linear_equations import LinearEquations, Point
 from .stability.linearization import motion_at, state_at
@@ -62,6 +62,7 @@ class Dae:
 
     def __post_init__(self) -> None:
         require_analytic(self.problem)
+        require_laws(self.problem)
 
     def __repr__(self) -> str:
         return f"<Dae of index {self.index} of {', '.join(self.names)} from t = {self.t0:g}>"

@@ -79,7 +79,28 @@ def ask(
     question = Question(document, arguments)
     if document in NO_SCENE:
         return run_batch(file, question.writer(), limits, settings)
-    return written(*ask_all([question], file, settings, limits))
+    if not isinstance(file, Source):
+        return written(*ask_all([question], file, settings, limits))
+    key = tuple(sorted(settings.items()))
+    if (question, key) not in file.answers:
+        questions = [question, *(each for each, given in file.waiting if given == settings)]
+        file.waiting = [each for each in file.waiting if each[1] != settings]
+        answers = ask_all(questions, file, settings, limits)
+        file.answers |= {(each, key): answer for each, answer in zip(questions, answers, strict=True)}
+    return written(file.answers.pop((question, key)))
+
+
+def ask_later(document: Document, file: Source, *arguments: Argument, settings: Mapping[str, str]) -> None:
+    """Ask for a document in the same run of Maxima as the next one.
+
+    Parameters
+    ----------
+    document, *arguments, settings : Document, Argument, mapping of str to str
+        As for `ask`, which returns the answer.
+    file : Source
+        As for `ask_all`.
+    """
+    file.waiting.append((Question(document, arguments), settings))
 
 
 def ask_all(

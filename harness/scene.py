@@ -499,22 +499,21 @@ class Scene:
         ------
         HolonomError
             If a control has no law or a parameter no value, if a sign changes or is held there, if the motion has
-            tables, releases or forces with multipliers, if it cannot be continued so far, or if the constraints lose
-            rank there.
+            releases or forces with multipliers, if it cannot be continued so far, or if the constraints lose rank
+            there.
 
         Examples
         --------
         >>> scene.linearize(at=0).A.shape
         (2, 2)
         """
-        from .program.motion_problem import DOUBLE_DIGITS
         from .stability.linearization import linearize
 
         if (name := options["equilibrium"]) is not None:
             if options["at"] is not None:
                 raise HolonomError(ErrorKind.TWO_STATES)
             return self.equilibria()[name].linearization
-        return linearize(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, options["at"])
+        return linearize(*self._linear_problem(), options["at"])
 
     @naming_the_extra()
     @takes_options(*options_of(AlongRequest))
@@ -540,10 +539,9 @@ class Scene:
         >>> scene.linearize_along(until=1, samples=3).transition.shape
         (3, 2, 2)
         """
-        from .program.motion_problem import DOUBLE_DIGITS
         from .stability.along import linearize_along
 
-        return linearize_along(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, AlongRequest(**options))
+        return linearize_along(*self._linear_problem(), AlongRequest(**options))
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
@@ -574,10 +572,9 @@ class Scene:
         >>> len(scene.equilibria())
         2
         """
-        from .program.motion_problem import DOUBLE_DIGITS
         from .stability.equilibria import find_equilibria
 
-        return find_equilibria(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, controls, **options)
+        return find_equilibria(*self._linear_problem(), controls, **options)
 
     @naming_the_extra()
     def at_equilibrium(self, name: str) -> "Scene":
@@ -642,11 +639,9 @@ class Scene:
         >>> scene.branches("u", [1.0]).to_pandas().shape
         (2, 5)
         """
-        from .program.motion_problem import DOUBLE_DIGITS
         from .stability.branches import find_branches
 
-        problem = self._problem("direct", DOUBLE_DIGITS)
-        return find_branches(problem, self._linear_equations, control, values, controls, **options)
+        return find_branches(*self._linear_problem(), control, values, controls, **options)
 
     @naming_the_extra()
     @takes_options(*options_of(DaeRequest))
@@ -673,9 +668,8 @@ class Scene:
         (6,)
         """
         from .dae import Dae
-        from .program.motion_problem import DOUBLE_DIGITS
 
-        return Dae(self._problem("direct", DOUBLE_DIGITS), self._linear_equations, **options)
+        return Dae(*self._linear_problem(), **options)
 
     @naming_the_extra()
     @takes_options(*options_of(Request, "solve"))
@@ -735,6 +729,16 @@ class Scene:
         '{"format":"holonom-program'
         """
         return MotionProgram(self._source, self._request(**options), self.limits)
+
+    def _linear_problem(self) -> "tuple[MotionProblem, LinearEquations]":
+        """Return the motion and its linearised equations, derived in one run of Maxima."""
+        from .documents import ask_later
+        from .formats import Document
+        from .program.motion_problem import DOUBLE_DIGITS
+
+        if "_linear_equations" not in vars(self):
+            ask_later(Document.LINEARIZATION, self._source, self._name, settings=self.settings)
+        return self._problem("direct", DOUBLE_DIGITS), self._linear_equations
 
     @cached_property
     def _linear_equations(self) -> "LinearEquations":

@@ -29,6 +29,8 @@ class Source:
     def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS) -> None:
         self.file, self.limits = file, limits
         self._described: dict[tuple[tuple[str, str], ...], Description] = {}
+        self.waiting: list[tuple[object, Mapping[str, str]]] = []  # questions of `documents.ask_later`
+        self.answers: dict[object, object] = {}  # to these questions
 
     def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
         """Return the description of the file under settings.

@@ -256,6 +256,23 @@ def require_analytic(problem: MotionProblem) -> None:
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
 
 
+def require_laws(problem: MotionProblem) -> None:
+    """Reject a motion whose controls follow servo-constraints.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Raises
+    ------
+    HolonomError
+        A control has no law.
+    """
+    if problem.servo:
+        raise HolonomError(ErrorKind.NO_LAW, problem.scene)
+
+
 def function_of_knot(knot: Fraction) -> str:
     """Return the function of time that changes its sign at a knot, as text of Maxima.
 

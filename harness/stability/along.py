@@ -226,7 +226,7 @@ def linearize_along(problem: MotionProblem, equations: LinearEquations, request:
         The motion is not analytic or cannot be followed so far; the constraints are singular on the way; the deviations
         change too fast for the error to be small.
     """
-    require_analytic(problem)
+    require_analytic(replace(problem, tables=()))
     intervals = request.samples - 1
     for blocks in BLOCKS:
         nodes = _Nodes(problem, equations, request, NODES * intervals * -(-blocks // intervals))
@@ -256,7 +256,7 @@ class _Node(NamedTuple):
     def turning(self) -> Matrix:
         """H of N' = H N, shape (n, n)."""
         rate, N = self.here["rate_by_q"], self.tangent.basis
-        R = self.tangent.solve(np.zeros_like(self.here["A_rate"]), -rate)[0]
+        R = self.tangent.shortest(-rate)
         return R - N @ (N.T @ self.here["A_rate"]) / 2
 
     def is_free(self, nominal: Vector, independent: Sequence[int]) -> bool:
@@ -326,7 +326,7 @@ class _Nodes:
         """Return True if the state returns and the equations repeat."""
         first, last = self.points[0], self.points[-1]
         nominal = nominal_of(self._problem)
-        if np.any(
+        if self._problem.tables or np.any(
             np.abs(last.state - first.state) > RETURNED * np.concatenate([nominal.coordinates, nominal.velocities])
         ):
             return False
@@ -403,7 +403,7 @@ def _stability_of(monodromy: Matrix) -> Stability:
 
 
 def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown: slice) -> FreeDeviations | None:
-    if not len(nodes.nodes[0].here["constraint"]):
+    if not len(nodes.nodes[0].here["constraint"]) or problem.servo:
         return None
     accelerations, independent = nominal_of(problem).accelerations, list(problem.independent)
     if not all(node.is_free(accelerations, independent) for node in nodes.nodes):

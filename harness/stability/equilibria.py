@@ -24,7 +24,7 @@ import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.motion_problem import MotionProblem, require_analytic
+from ..program.motion_problem import MotionProblem, require_analytic, require_laws
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
@@ -216,6 +216,7 @@ def find_equilibria(
     from .real_solutions import solve_exactly
 
     require_analytic(problem)
+    require_laws(problem)
     if equations.changes_with_time:
         raise HolonomError(ErrorKind.NEVER_AT_REST)
     values = _constant_controls(problem, equations, controls)

@@ -8,7 +8,7 @@ and the first and second time derivatives of the latter.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -20,6 +20,8 @@ from ..formats import Document, read
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
+from ..program.table import Table
+from ..program.table_numbers import TimeFunction
 from ..simulation.matrices import INDEXED, Matrix, Vector
 from ..source import Source
 from ..structs import structured
@@ -35,13 +37,21 @@ class LinearEquations:
     Attributes
     ----------
     coordinates, multipliers, controls : tuple of str
-        Names: n, g and r of them.
+        Names: n, g and r of them. The controls have a law.
+    found : tuple of str
+        Names of controls in forces that servo-constraints find.
+    drives : int
+        Number of controls in constraints that servo-constraints find. They are the last coordinates, without mass.
+    servo : int
+        Number of constraints, the last ones, without reactions.
+    tables : tuple of Table
+        Tables of the law.
     forced : bool
         Whether forces without a potential act.
     law : Program or None
-        Of t: u, dot u, ddot u, or None where a control has no law.
+        Of t and tables: u, dot u, ddot u, or None where a control has no law.
     program : Program
-        Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u).
+        Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u). Found controls and drives follow those with a law.
     outputs : tuple of str
         Names of what the scene observes itself.
     """
@@ -49,6 +59,10 @@ class LinearEquations:
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
     controls: tuple[str, ...]
+    found: tuple[str, ...]
+    drives: int
+    servo: int
+    tables: tuple[Table, ...]
     forced: bool
     law: Program | None
     program: Program
@@ -65,8 +79,9 @@ class LinearEquations:
         return [(array, tuple(int(place) - 1 for place in places if place)) for array, *places in parts]
 
     @cached_property
-    def _law(self) -> NumpyFunction:
-        return NumpyFunction(self.law)
+    def _law(self) -> TimeFunction:
+        rates = [f"{dots}({u})" if dots else u for dots in ("", "dot", "ddot") for u in self.controls]
+        return TimeFunction(replace(self.law, outputs={name: self.law.outputs[name] for name in rates}), self.tables)
 
     @property
     def changes_with_time(self) -> bool:
@@ -95,7 +110,7 @@ class LinearEquations:
             return np.empty(0)
         if self.law is None:
             raise HolonomError(ErrorKind.NO_LAW)
-        return self._law([t])
+        return self._law(np.asarray(t))
 
     def at(self, point: "Point", independent: Sequence[int]) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.
@@ -112,22 +127,53 @@ class LinearEquations:
         mapping of str to ndarray
             ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
             gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n); ``output``, the
-            scene's own, with its gradients, also by the multipliers that are looked at.
+            scene's own, with its gradients, also by the multipliers that are looked at. ``reactions``, shape (n, f):
+            the forces that keep the constraints, those of multipliers, found controls and drives of one.
+            ``output_by_forces``, shape (outputs, f).
         """
         n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)
-        sizes = dict(zip(GROUPS, (n, n, n, r, r, r), strict=True))
+        pushing = len(self.found) + self.drives
+        sizes = dict(zip(GROUPS, (n, n, n, *[r + pushing] * 3), strict=True))
         points = point.state.shape[1:]
         own = len(self.outputs)
         found = {"A_rate": np.zeros((n, n, *points)), "output_by_multipliers": np.zeros((own, g, *points))}
         for row, size in zip(ROWS, (n, g, g, g, own), strict=True):
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
-        values = self._evaluate([point.t, *np.concatenate(point[1:])])
+        values = self._evaluate([point.t, *np.concatenate(self._inputs(point))])
         for (array, place), value in zip(self._places, values, strict=True):
             found[array][place] = value
-        found["output_by_multipliers"] = found["output_by_multipliers"][:, list(independent)]
         of_motion = ("equation", "A_rate", "output")
-        return {name: each if name.startswith(of_motion) else each[list(independent)] for name, each in found.items()}
+        found = {name: each if name.startswith(of_motion) else each[list(independent)] for name, each in found.items()}
+        natural = self.natural(independent)
+        reactions = np.swapaxes(found["constraint_by_q"][:natural], 0, 1), -found["equation_by_u"][:, r:]
+        own_by_multipliers = found.pop("output_by_multipliers")[:, list(independent[:natural])]
+        own_by_forces = own_by_multipliers, found["output_by_u"][:, r:]
+        cut = {f"{row}_by_{rate}": found[f"{row}_by_{rate}"][:, :r] for row in ROWS for rate in GROUPS[3:]}
+        return found | cut | {
+            "reactions": np.concatenate(reactions, axis=1), "output_by_forces": np.concatenate(own_by_forces, axis=1)
+        }  # fmt: skip
+
+    def natural(self, independent: Sequence[int]) -> int:
+        """Return the number of constraints with reactions.
+
+        Parameters
+        ----------
+        independent : sequence of int
+            Constraints that are looked at, in order.
+
+        Returns
+        -------
+        int
+        """
+        return sum(beta < len(self.multipliers) - self.servo for beta in independent)
+
+    def _inputs(self, point: "Point") -> Sequence[Matrix]:
+        if not len(point.found):
+            return point[1:5]
+        rates = np.split(point.controls, 3)
+        none = np.zeros_like(point.found)
+        return *point[1:4], rates[0], point.found, rates[1], none, rates[2], none
 
 
 class Point(NamedTuple):
@@ -138,6 +184,7 @@ class Point(NamedTuple):
     accelerations: Vector  # shape (n,)
     multipliers: Vector  # shape (g,), those of all constraints
     controls: Vector  # shape (3r,): u, dot u, ddot u
+    found: Vector = np.empty(0)  # forces of found controls and drives
 
 
 def linear_equations(source: Source, request: Request) -> LinearEquations:

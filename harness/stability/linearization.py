@@ -63,7 +63,10 @@ class Linearization(Shown):
     leading : tuple of str
         Names of the m coordinates to which the tangent coordinates belong.
     controls, outputs : tuple of str
-        Names of the r inputs and of the entries of y: coordinates, velocities, multipliers, outputs of the scene.
+        Names of the r inputs and of the entries of y: coordinates, velocities, multipliers, controls in forces that
+        servo-constraints find, outputs of the scene.
+    point : mapping of str to float
+        Time, state, accelerations, multipliers and controls with their rates, by name.
     mass : ndarray, shape (n, n)
         The mass matrix.
     basis : ndarray, shape (n, m)
@@ -89,6 +92,7 @@ class Linearization(Shown):
     leading: tuple[str, ...]
     controls: tuple[str, ...]
     outputs: tuple[str, ...]
+    point: Mapping[str, float]
     mass: Matrix
     basis: Matrix
     A: Matrix
@@ -235,6 +239,7 @@ class Linearization(Shown):
             "at": self.at,
             "at_rest": self.at_rest,
             **{name: list(getattr(self, name)) for name in ("coordinates", "leading", "controls", "outputs")},
+            "point": dict(self.point),
             **{name: getattr(self, name).tolist() for name in ("mass", "basis", "A", "C")},
             **{name: {rate: each.tolist() for rate, each in getattr(self, name).items()} for name in ("B", "D")},
             "eigenvalues": pairs(self.eigenvalues),
@@ -271,10 +276,10 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        A sign changes or is held there; the motion has tables, releases or forces with multipliers, or cannot be
-        continued so far; the constraints are singular there.
+        A sign changes or is held there; the motion has releases or forces with multipliers, or cannot be continued so
+        far; the constraints are singular there.
     """
-    require_analytic(replace(problem, signs=()))
+    require_analytic(replace(problem, signs=(), tables=()))
     t, state = state_at(problem, at)
     _require_between_switchings(problem, t, state)
     return linearized(problem, equations, motion_at(problem, equations, t, state), t)
@@ -292,7 +297,7 @@ def _require_between_switchings(problem: MotionProblem, t: float, state: Vector)
     for place, sign in enumerate(problem.signs, start=1):
         program = computing(problem.switching, {f"switch[{place}]"})
         known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}
-        if not names_used(program) <= known.keys():
+        if not names_used(program) & set(program.inputs) <= known.keys():
             raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, sign.of)
         here, *beside = NumpyFunction(program)([known.get(name, 0.0) for name in program.inputs])[0]
         if not abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here))):
@@ -348,10 +353,15 @@ def tangent_at(
     """
     independent = problem.independent
     here = equations.at(point, independent)
-    tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+    tangent = _tangent(equations, here)
     if tangent.rank < len(independent) and problem.obstruction is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     return here, tangent
+
+
+def _tangent(equations: LinearEquations, here: Mapping[str, Matrix]) -> Tangent:
+    reactions = here["reactions"] if equations.servo else None
+    return Tangent(here["equation_by_a"], here["constraint_by_q"], reactions)
 
 
 def linearization_of(
@@ -375,7 +385,7 @@ def linearization_of(
     -------
     Linearization
     """
-    names = equations.coordinates
+    names, reacting = equations.coordinates, problem.independent[: equations.natural(problem.independent)]
     nominal, velocities = nominal_of(problem), point.state[len(names) :]
     moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
@@ -385,11 +395,21 @@ def linearization_of(
         names,
         tuple(names[place] for place in tangent.leading),
         equations.controls,
-        (*problem.state, *(equations.multipliers[beta] for beta in problem.independent), *equations.outputs),
+        (*problem.state, *(equations.multipliers[beta] for beta in reacting), *equations.found, *equations.outputs),
+        _named(equations, problem.state, point),
         here["equation_by_a"],
         tangent.basis,
-        *_state_space(here, tangent),
+        *_state_space(here, tangent, len(reacting) + len(equations.found)),
     )
+
+
+def _named(equations: LinearEquations, state: Sequence[str], point: Point) -> dict[str, float]:
+    rates = [f"{dots}({u})" if dots else u for dots in ("", "dot", "ddot") for u in equations.controls]
+    accelerations = [f"ddot({q})" for q in equations.coordinates]
+    reacting = len(equations.multipliers) - equations.servo
+    names = "t", *state, *accelerations, *equations.multipliers[:reacting], *rates, *equations.found
+    point = point._replace(multipliers=point.multipliers[:reacting], found=point.found[: len(equations.found)])
+    return dict(zip(names, map(float, [point.t, *np.concatenate(point[1:])]), strict=True))
 
 
 def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
@@ -474,24 +494,30 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
         A control has no law, or the mass matrix is singular along a free direction.
     """
     n, rows, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
-    at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t))
+    none = np.zeros(len(equations.found) + equations.drives)
+    at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t), none)
     here = equations.at(at_rest, rows)
-    tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+    tangent = _tangent(equations, here)
+    if not tangent.determined:
+        raise HolonomError(ErrorKind.NOT_LINEARIZED, time=t)
     accelerations, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])
-    multipliers[rows] = forces[:, 0]
-    return at_rest._replace(accelerations=accelerations[:, 0])
+    reacting = rows[: equations.natural(rows)]
+    multipliers[reacting], found = np.split(forces[:, 0], [len(reacting)])
+    return at_rest._replace(accelerations=accelerations[:, 0], found=found)
 
 
-def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
-    """Return A, B, C, D from deviations with columns for xi, eta, du, du' and du''."""
+def _state_space(
+    here: Mapping[str, Matrix], tangent: Tangent, shown: int
+) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
+    """Return A, B, C, D from deviations with columns for xi, eta, du, du' and du''.
+
+    Of the forces that keep the constraints, C and D contain the first ones.
+    """
     mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
     N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]
 
-    def moved(jacobian_deviation: Matrix) -> Matrix:
-        return tangent.solve(np.zeros((n, jacobian_deviation.shape[1])), -jacobian_deviation)[0]
-
-    P, R = moved(U), moved(here["rate_by_q"] @ N)
-    S = moved(here["rate_by_q"] @ P + here["rate_by_u"])
+    P, R = tangent.shortest(-U), tangent.shortest(-here["rate_by_q"] @ N)
+    S = tangent.shortest(-here["rate_by_q"] @ P - here["rate_by_u"])
     turned = N.T @ mass_rate @ N / 2
     q = np.block([N, np.zeros((n, m)), P, np.zeros((n, 2 * r))])
     v = np.block([R, N, S, P, np.zeros((n, r))])
@@ -499,11 +525,11 @@ def _state_space(here: Mapping[str, Matrix], tangent: Tangent) -> tuple[Matrix, 
     unsolved = _by_deviations(here, "equation", q, v, controls)
     basis_rate = R - N @ turned
     xi_rate = np.block([turned, np.eye(m), R.T @ mass @ P + N.T @ mass_rate @ P, np.zeros((m, 2 * r))])
-    eta_rate = (basis_rate.T @ mass + N.T @ mass_rate) @ v - N.T @ unsolved
-    accelerations, multipliers = tangent.solve(-unsolved, -_by_deviations(here, "acceleration", q, v, controls))
+    accelerations, forces = tangent.solve(-unsolved, -_by_deviations(here, "acceleration", q, v, controls))
+    eta_rate = (basis_rate.T @ mass + N.T @ mass_rate) @ v + N.T @ mass @ accelerations
     own = _by_deviations(here, "output", q, v, controls) + here["output_by_a"] @ accelerations
-    own = own + here["output_by_multipliers"] @ multipliers
-    rows, outputs = np.concatenate([xi_rate, eta_rate]), np.concatenate([q, v, multipliers, own])
+    own = own + here["output_by_forces"] @ forces
+    rows, outputs = np.concatenate([xi_rate, eta_rate]), np.concatenate([q, v, forces[:shown], own])
     (A, *B), (C, *D) = (np.split(part, 2 * m + r * np.arange(3), axis=1) for part in (rows, outputs))
     return A, dict(zip(RATES, B, strict=True)), C, dict(zip(RATES, D, strict=True))
 

@@ -28,6 +28,8 @@ class Tangent:
         A, which may be singular if the constraints make the system regular.
     jacobian : ndarray, shape (g, n)
         J, whose rows may depend on one another.
+    reactions : ndarray, shape (n, f), or None
+        Directions of the forces that satisfy the constraints, if they are other than J^T: those of controls.
 
     Attributes
     ----------
@@ -52,8 +54,8 @@ class Tangent:
     ([[0.5], [0.0]], (0,))
     """
 
-    def __init__(self, mass: Matrix, jacobian: Matrix) -> None:
-        self._mass, self._jacobian = mass, jacobian
+    def __init__(self, mass: Matrix, jacobian: Matrix, reactions: Matrix | None = None) -> None:
+        self._mass, self._jacobian, self._reactions = mass, jacobian, reactions
         weighted = weighted_constraints(mass, jacobian)
         left, values, _ = np.linalg.svd(weighted.directions)
         self.rank = int(np.count_nonzero(values > DEPENDENT * values.max(initial=0.0)))
@@ -83,10 +85,25 @@ class Tangent:
         turned.basis = self.basis @ (left @ right)
         return turned
 
-    def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
-        """Return x and mu of A x - J^T mu = F, J x = b.
+    def shortest(self, constrained: Matrix) -> Matrix:
+        """Return the solution x of J x = b that is orthogonal to N in the mass metric.
 
-        If the constraints depend on one another, mu is the shortest solution.
+        Parameters
+        ----------
+        constrained : ndarray, shape (g, k)
+            b.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        x = self._inverse @ constrained
+        return x - self.basis @ (self.basis.T @ (self._mass @ x))
+
+    def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
+        """Return x and mu of A x - R mu = F, J x = b, where R are the reactions.
+
+        If they depend on one another, mu is the shortest solution.
 
         Parameters
         ----------
@@ -98,11 +115,33 @@ class Tangent:
         Returns
         -------
         x : ndarray, shape (n, k)
-        mu : ndarray, shape (g, k)
+        mu : ndarray, shape (f, k), or (g, k) without other reactions
         """
-        x = self._inverse @ constrained
-        x = x + self.basis @ (self.basis.T @ (force - self._mass @ x))
-        return x, self._inverse.T @ (self._mass @ x - force)
+        x = self.shortest(constrained)
+        if self._reactions is None:
+            x = x + self.basis @ (self.basis.T @ force)
+            return x, self._inverse.T @ (self._mass @ x - force)
+        moved, forces = np.split(self._pushed @ (force - self._mass @ x), [self.basis.shape[1]])
+        return x + self.basis @ moved, forces
+
+    @cached_property
+    def determined(self) -> bool:
+        """True if the reactions are sufficient and independent."""
+        return self._reactions is None or np.linalg.matrix_rank(self._scaled[0], DEPENDENT) == self._scaled[0].shape[1]
+
+    @cached_property
+    def _pushed(self) -> Matrix:
+        """Return the inverse of [A N, -R], which may have more rows than columns."""
+        matrix, rows, columns = self._scaled
+        return np.linalg.pinv(matrix, rcond=DEPENDENT) / columns[:, None] * rows
+
+    @cached_property
+    def _scaled(self) -> tuple[Matrix, Vector, Vector]:
+        """Return [A N, -R] in scaled units, with the factors of rows and columns."""
+        rows = 1 / np.sqrt(or_one(np.abs(self._mass.diagonal())))
+        matrix = rows[:, None] * np.hstack([self._mass @ self.basis, -self._reactions])
+        columns: Vector = or_one(np.linalg.norm(matrix, axis=0))
+        return matrix / columns, rows, columns
 
     def sizes_of_multipliers(self, force: Matrix, constrained: Matrix) -> Matrix:
         """Return the sizes of the terms that mu of `solve` is the sum of.

@@ -248,16 +248,17 @@ def test_what_no_control_can_follow_is_refused(what):
 
 
 @pytest.mark.parametrize(
-    ("asked", "refusal"),
+    ("asked", "kind"),
     [
-        (lambda scene: scene.linearize(at=0), "servo_linearized"),
-        (lambda scene: scene.equilibria(), "servo_linearized"),
-        (lambda scene: scene.effects(), "servo_not_possible"),
+        (lambda scene: scene.dae(), ErrorKind.NO_LAW),
+        (lambda scene: scene.equilibria(), ErrorKind.NO_LAW),
+        (lambda scene: scene.effects(), ErrorKind.REFUSED),
     ],
 )
-def test_what_takes_the_controls_as_given_is_refused(asked, refusal):
-    with refused(refusal):
+def test_what_takes_the_controls_as_given_is_refused(asked, kind):
+    with pytest.raises(HolonomError) as refused:
         asked(holonom.system(BOB.format(course="-2", speed=0)))
+    assert refused.value.kind is kind
 
 
 def test_sweep_keeps_the_second_rate_of_the_control():

@@ -122,22 +122,65 @@ scene : holonomic_scene(system, control_law = [u = 1 + t/4 + e*(1 + sin(3*t))], 
 scene : holonomic_scene(system, control_law = [u = t^2/3 + e*cos(t), w = 1 + e*t], time_span = [0, 2],
   initial_state = [phi = 1/2 + e, x = 2, dot(phi) = -1, dot(x) = e/2], initial_guess = [y = 2, dot(y) = 0])$
 """,
+    "winch and force that keep a course": """system : holonomic_system(coordinates = [x, y, z], controls = [u, F, w],
+  parameters = [e], kinetic_energy = (1 + z^2/4)*dot(x)^2 + dot(y)^2 + dot(z)^2/2,
+  potential_energy = [gravity = 20*y, spring = (z - x)^2], forces = [drive = [F*z/5, F/7, F]],
+  constraints = [x^2 + (y - w)^2 - u^2])$
+scene : holonomic_scene(system, servo_constraints = [y = -2 + t/10, z = x/3 + sin(t)],
+  control_law = [w = t^2/10 + e*cos(t)], time_span = [0, 2], initial_state = [x = 1/2 + e, dot(x) = e/3],
+  initial_guess = [y = -2, u = 2, z = 0, dot(z) = 1, dot(y) = 0, dot(u) = 0],
+  observe = [trajectory, controls, multipliers, pull = -2*u*lambda1 + F*dot(z)])$
+""",
+    "course of relative degree four": """system : holonomic_system(coordinates = [h, x, z], controls = [u, w],
+  parameters = [e], kinetic_energy = dot(h)^2/2 + dot(x)^2 + dot(z)^2*(1 + z^2)/2,
+  potential_energy = [gravity = 10*h + 20*x, spring = 25*(h - x - 1)^2 + 10*(z - x)^2], constraints = [h - u - w])$
+scene : holonomic_scene(system, servo_constraints = [x = sin(t)], control_law = [w = t/5 + e*cos(t)],
+  time_span = [0, 2], initial_state = [z = 1/5 + e, dot(z) = e/4],
+  initial_guess = [x = 0, u = 1, h = 1, dot(h) = 0, dot(x) = 0, dot(u) = 0], observe = [trajectory, multipliers])$
+""",
+    "prescribed tension": """system : holonomic_system(coordinates = [x, y], controls = [u, w], parameters = [e],
+  kinetic_energy = dot(x)^2 + dot(y)^2, potential_energy = [gravity = 20*y], constraints = [x^2 + (y - w)^2 - u^2])$
+scene : holonomic_scene(system, prescribed_reactions = [lambda1 = -5 - t], control_law = [w = t^2/10 + e*cos(t)],
+  time_span = [0, 2], initial_state = [x = 1/2 + e, y = -2, dot(x) = e/3, dot(y) = 1],
+  initial_guess = [u = 2, dot(u) = 0])$
+""",
+    "table": """system : holonomic_system(coordinates = [x, y], controls = [u, w], parameters = [e],
+  kinetic_energy = dot(x)^2 + dot(y)^2, potential_energy = [gravity = 20*y], constraints = [x^2 + (y - w)^2 - u^2])$
+scene : holonomic_scene(system, control_law = [u = table([[0, 2], [1/2, 3/2], [1, 2], [3/2, 1], [2, 2]]), w = e*cos(t)],
+  time_span = [0, 2], initial_state = [x = 1/2 + e, dot(x) = e/3], initial_guess = [y = -2, dot(y) = 0])$
+""",
+    "law in parts": """system : holonomic_system(coordinates = [x, y], controls = [u, w], parameters = [e],
+  kinetic_energy = dot(x)^2 + dot(y)^2, potential_energy = [gravity = 20*y],
+  forces = [dry = [-signum(dot(x) - w), 0]], constraints = [x^2 + (y - w)^2 - u^2])$
+scene : holonomic_scene(system, control_law = [u = if t < 2/5 then 2 else 2 + (t - 2/5)^3, w = e*cos(t)],
+  time_span = [0, 2], initial_state = [x = 1/2 + e, dot(x) = -1 + e/3], initial_guess = [y = -2, dot(y) = 0])$
+""",
 }
+
+
+def cosine(t):
+    return [[np.cos(t)], [-np.sin(t)], [-np.cos(t)]]
+
+
 LAWS = {  # by e: of u, dot(u) and ddot(u), a row for each control
     "pendulum": lambda t: [[1 + np.sin(3 * t)], [3 * np.cos(3 * t)], [-9 * np.sin(3 * t)]],
     "two bars": lambda t: [[np.cos(t), t], [-np.sin(t), 1], [-np.cos(t), 0]],
+    "winch and force that keep a course": cosine,
+    "course of relative degree four": cosine,
+    "prescribed tension": cosine,
+    "table": lambda t: np.insert(cosine(t), 0, 0, axis=1),
+    "law in parts": lambda t: np.insert(cosine(t), 0, 0, axis=1),
 }
 TIME, STEP, SMALL = 0.8, 2e-3, 1e-4
 STENCIL = {-2: 1 / 12, -1: -2 / 3, 1: 2 / 3, 2: -1 / 12}  # of a first derivative
 
 
-def deviations(scene, times):
-    """Derivatives by e of coordinates, velocities and multipliers at times."""
+def deviations(scene, times, outputs):
+    """Derivatives by e of outputs at times."""
 
     def numbers(time, e):
         motion = scene.simulate(until=time, samples=2, tol=1e-14, e=e)
-        parts = motion.coordinates, motion.velocities, motion.multipliers
-        return np.array([samples[-1] for part in parts for samples in part.values()])
+        return np.array([motion[name][-1] for name in outputs])
 
     def derivative(time, h):
         return (numbers(time, h) - numbers(time, -h)) / (2 * h)
@@ -177,10 +220,10 @@ def test_multipliers_of_neighbouring_states(file):
 def test_small_deviations_of_a_motion_follow_the_linear_system(name):
     scene = holonom.system(PARTS[name])
     times = {k: TIME + k * STEP for k in (0, *STENCIL)}
-    deviating = deviations(scene, times)
     undisturbed = scene.with_settings(e=0)
     found = {k: undisturbed.linearize(t) for k, t in times.items()}
     here, n = found[0], len(found[0].coordinates)
+    deviating = deviations(scene, times, here.outputs)
 
     def state(k):
         """Deviations in tangent coordinates whose basis moves as little as the metric allows: its turn is symmetric."""
