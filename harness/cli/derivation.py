@@ -17,6 +17,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport, EquationVerdict
+    from ..description import Description
     from ..record import Record
     from ..source import Source
 
@@ -75,12 +76,20 @@ def derive(
     return 0
 
 
-@holonom.command(examples=["check examples/pendulum.mac", "check examples/pendulum.mac examples/crane.mac"])
+@holonom.command(examples=["check examples/pendulum.mac", "check examples/pendulum.mac --result lin.json"])
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
 @limits_closed_forms
 @writes_json
 @click.option("--seed", metavar="TEXT", help="Repeat the random points of an earlier check, which printed this seed.")
+@click.option(
+    "--result",
+    "result_files",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(exists=True, dir_okay=False, path_type=Path),
+    help="Also check a JSON result of linearize, equilibria or series. May be repeated.",
+)
 @click.option("--allow-undecided", is_flag=True, help="Exit with status 0 if something is undecided.")
 @runs_scenes
 def check(
@@ -89,6 +98,7 @@ def check(
     closed_form_size: int | None,
     json_file: Path | None,
     seed: str | None,
+    result_files: Sequence[Path],
     allow_undecided: bool,
     limits: Limits,
 ) -> int:
@@ -102,6 +112,8 @@ def check(
     from ..source import Source
     from .beside import beside, result_of
 
+    if result_files and len(scenes) > 1:
+        raise click.UsageError("--result needs one SCENE")
     seed = seed or fresh_seed()
     sources = [Source(scene, limits) for scene in scenes]
     with beside(_verify_motions, settings, seed) as child:
@@ -126,10 +138,18 @@ def check(
         (as_given(source.file), report.with_verdicts(verdicts))
         for source, report, verdicts in zip(sources, checked, motions, strict=True)
     ]
+    if result_files:
+        reports = [(reports[0][0], reports[0][1].with_verdicts(_verify_results(described[0], result_files)))]
     documents = [_report_document(scene, report) for scene, report in reports]
     present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
     unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
+
+
+def _verify_results(description: "Description", files: Sequence[Path]) -> list["EquationVerdict"]:
+    from ..crosscheck.results import read_result, verify_result
+
+    return [verify_result(description, read_result(file)) for file in files]
 
 
 def _verify_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:

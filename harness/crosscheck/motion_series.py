@@ -180,7 +180,7 @@ def _compared(
     yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
-    yield from _values_of_equations(motion, taylor, curve, ordered)
+    yield from values_of_equations(motion, taylor, curve, ordered)
 
 
 def _values_of_forces(
@@ -213,9 +213,27 @@ def _start(series: MotionSeries, time: mp.mpf) -> dict[str, mp.mpf]:
     return found
 
 
-def _values_of_equations(
+def values_of_equations(
     motion: DescribedMotion, taylor: Taylor, curve: Values, multipliers: list[Polynomial]
 ) -> Iterator[ComparedValue]:
+    """Check that power series satisfy the equations of motion and all constraints.
+
+    Parameters
+    ----------
+    motion : DescribedMotion
+        The reference.
+    taylor : Taylor
+        Arithmetic up to the order of the series.
+    curve : Values
+        Series of the time, parameters, controls and coordinates.
+    multipliers : list of Polynomial
+        Series of the multipliers, in order.
+
+    Yields
+    ------
+    ComparedValue
+        Coefficient of a residual.
+    """
     values = motion.values(taylor, curve)
     sizes = motion.tape.sizes(taylor, values)
     equations = motion.equations(taylor, values, multipliers)
@@ -278,7 +296,7 @@ def _values_of_servo(
     found = {name: computed[name] for name in motion.system.controls if name in computed}
     law = motion.law.at(Taylor(ORDER + 1), curve["t"][0], motion.parameters())
     multipliers = [computed[name] for name in motion.system.multipliers]
-    yield from _values_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
+    yield from values_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
 
 
 def _expanded(problem: MotionProblem) -> tuple[Values, Values]:

@@ -1,0 +1,167 @@
+"""Verdicts on results of `linearize`, `equilibria` and `series` in JSON documents.
+
+Derivatives of power series by p are checked without differentiation: the series q + e dq/dp must satisfy the equations
+for p + e to first order, which a central difference shows.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from mpmath import mp
+
+from ..description import Description
+from ..failures import ErrorKind, HolonomError
+from ..formats import Publication, require
+from ..number_texts import number, numbers
+from ..program.differentiation import derivative_name
+from .compared_values import differing
+from .described_motion import DescribedMotion
+from .digits import DIGITS
+from .irregular_point import IrregularPoint
+from .law import Law
+from .linearized import DescribedEquations, claims_of_equilibria, claims_of_linearization, verify
+from .motion_series import values_of_equations
+from .motion_states import ComparedValue
+from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
+from .taylor import Polynomial, Taylor
+
+LOST = 10  # digits that a derivative in rounded numbers may lose
+Content = Mapping[str, Any]
+
+
+def read_result(file: Path) -> Content:
+    """Read a JSON document of `linearize`, `equilibria` or `series`.
+
+    Parameters
+    ----------
+    file : Path
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    HolonomError
+        It is no such document.
+    """
+    try:
+        content = json.loads(file.read_text("utf-8"))
+        kind = next(each for each in VERIFIERS if content["format"] == f"holonom-{each}")
+    except (ValueError, KeyError, TypeError, RecursionError, StopIteration):
+        detail = f"{file}: expected the JSON of {', '.join(VERIFIERS)}"
+        raise HolonomError(ErrorKind.NOT_A_DOCUMENT, detail=detail) from None
+    require(kind, content)
+    return content
+
+
+def verify_result(description: Description, content: Content) -> EquationVerdict:
+    """Return the verdict on a result.
+
+    Parameters
+    ----------
+    description : Description
+        The reference.
+    content : mapping
+        Document as of `read_result`.
+
+    Returns
+    -------
+    EquationVerdict
+    """
+    kind, name = Publication(content["format"].removeprefix("holonom-")), content["scene"]
+    if name not in {scene.name for scene in description.scenes}:
+        found = CheckResult(Verdict.DISAGREES, None, None, "the description has no such scene")
+    else:
+        found = VERIFIERS[kind](description, content)
+    return verdict_on(Place(0, name), Item("result", "", f"result: {kind}"), found)
+
+
+def _verify_linearization(description: Description, content: Content) -> CheckResult:
+    return verify(claims_of_linearization(DescribedEquations(description, content["scene"]), content))
+
+
+def _verify_equilibria(description: Description, content: Content) -> CheckResult:
+    return verify(claims_of_equilibria(DescribedEquations(description, content["scene"]), content))
+
+
+def _verify_derivatives(description: Description, content: Content) -> CheckResult:
+    scene = next(each for each in description.scenes if each.name == content["scene"])
+    inside = content["arithmetic"].partition("(")[2].rstrip(")")
+    digits = min(DIGITS, int(inside) - LOST) if inside else DIGITS
+    if not content["sensitivities"]:
+        return CheckResult(Verdict.NOTHING, None, None, "the series has no derivatives")
+    try:
+        wrong = differing(partial(_derivatives, DescribedMotion(description, scene), content), digits)
+    except IrregularPoint:
+        return CheckResult(Verdict.UNDECIDED, None, None, "an expression has no value at the start")
+    return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
+
+
+VERIFIERS: Mapping[Publication, Callable[[Description, Content], CheckResult]] = {
+    Publication.LINEARIZED: _verify_linearization,
+    Publication.EQUILIBRIA: _verify_equilibria,
+    Publication.SERIES: _verify_derivatives,
+}
+
+
+def _derivatives(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue]:
+    names = (*content["coordinates"], *content["multipliers"])
+    moving = content["sensitivities"]
+    directions = {name.partition(", ")[2].rstrip(")") for name in moving}
+    for direction in sorted(directions):
+        missing = [name for name in names if derivative_name(name, direction) not in moving]
+        yield ComparedValue(f"derivatives by {direction}", mp.mpf(len(missing)), mp.zero, mp.zero)
+        yield from _initial_derivatives(motion, content, direction)
+        yield from _derivatives_by(motion, content, direction)
+
+
+def _initial_derivatives(motion: DescribedMotion, content: Content, direction: str) -> Iterator[ComparedValue]:
+    """Check the derivatives of given initial values."""
+    small, parameters = _small(), motion.parameters()
+    for name, tree in motion.scene.initial_state.trees.items():
+        rate = name.startswith("dot(")
+        row = content["sensitivities"][derivative_name(name[4:-1] if rate else name, direction)]
+        given = number(row[rate])
+        if name == direction:
+            yield ComparedValue(f"initial {derivative_name(name, direction)}", given, mp.one, mp.one)
+        elif direction in parameters:
+            law = Law({"": tree}, ())
+            moved = (parameters | {direction: (parameters[direction][0] + step,)} for step in (-small, small))
+            before, after = (law.at(Taylor(0), mp.zero, known)[""][0] for known in moved)
+            change = (after - before) / (2 * small)
+            yield ComparedValue(f"initial {derivative_name(name, direction)}", given, change, mp.one)
+
+
+def _derivatives_by(motion: DescribedMotion, content: Content, direction: str) -> Iterator[ComparedValue]:
+    small = _small()
+    before, after = (list(_residuals(motion, content, direction, step)) for step in (-small, small))
+    for old, new in zip(before, after, strict=True):
+        size = old.size + abs(new.size - old.size) / (2 * small)
+        what = f"{old.quantity}, differentiated by {direction}"
+        yield ComparedValue(what, (new.given - old.given) / (2 * small), mp.zero, size)
+
+
+def _residuals(motion: DescribedMotion, content: Content, direction: str, step: mp.mpf) -> Iterator[ComparedValue]:
+    order, time = content["order"], number(content["t0"])
+    parameters = motion.parameters()
+    if direction in parameters:
+        parameters = parameters | {direction: (parameters[direction][0] + step,)}
+
+    def moved(name: str, row: list[str]) -> Polynomial:
+        change = content["sensitivities"][derivative_name(name, direction)]
+        return tuple(x + step * dx for x, dx in zip(numbers(row), numbers(change), strict=True))
+
+    curve = parameters | motion.law.at(Taylor(order + 1), time, parameters) | {"t": (time, mp.one)}
+    curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
+    multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
+    yield from values_of_equations(motion, Taylor(order), curve, multipliers)
+
+
+def _small() -> mp.mpf:
+    return mp.mpf(10) ** (-mp.dps // 3)

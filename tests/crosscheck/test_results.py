@@ -1,0 +1,133 @@
+"""Wrong results of linearize, equilibria and series, drawn at random, are found."""
+
+import copy
+import json
+import random
+from fractions import Fraction
+
+import pytest
+
+import holonom
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.results import read_result, verify_result
+from holonom.failures import ErrorKind, HolonomError
+from holonom.formats import Publication, published
+from holonom.series.power_series import series_document
+
+PENDULUM = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y],
+  forces = [drag = [-dot(x)/2, 0], drive = [0, u*dot(u)]], constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = 1 + t/10], parameter_values = [m = 3/2, g = 981/100],
+  initial_state = [x = 2/5*m, dot(x) = 1/2], initial_guess = [y = -4/5, dot(y) = 0], time_span = [0, 2],
+  observe = [trajectory, multipliers, pull = lambda1*x + ddot(y)])$
+"""
+LED = """system : holonomic_system(coordinates = [x, y, z], controls = [u, F], kinetic_energy = dot(x)^2 + dot(y)^2
+    + (1 + z^2)*dot(z)^2/2,
+  potential_energy = [gravity = 20*y, spring = (z - x)^2], forces = [drive = [F*z/5, F/7, F]],
+  constraints = [x^2 + y^2 - u^2])$
+led : holonomic_scene(system, servo_constraints = [y = -2 + t/10, z = x/3 + sin(t)], time_span = [0, 2],
+  initial_state = [x = 1/2, dot(x) = 1],
+  initial_guess = [y = -2, u = 2, z = 0, dot(z) = 1, dot(y) = 0, dot(u) = 0], observe = [trajectory, multipliers])$
+"""
+HOOP = """system : holonomic_system(coordinates = [r, z], kinetic_energy = (dot(r)^2 + dot(z)^2 + 25*r^2)/2,
+  potential_energy = [gravity = 10*z], constraints = [r^2 + z^2 - 1])$
+rest : holonomic_scene(system, initial_state = [r = 0, dot(r) = 0, dot(z) = 0], initial_guess = [z = -1],
+  time_span = [0, 1])$
+"""
+RESULTS = {
+    "linearisation": (PENDULUM, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
+    "servo-constraints": (LED, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
+    "equilibria": (HOOP, lambda scene: published(Publication.EQUILIBRIA, scene.equilibria().document())),
+    "series": (PENDULUM, lambda scene: series_document(scene.series(order=6, sensitivities=["m", "x"]))),
+}
+VERIFIED = {  # entries of each document that a verdict is about
+    "linearisation": ("at_rest", "point", "mass", "basis", "A", "B", "C", "D", "eigenvalues", "frequencies", "damping",
+                      "modes", "controllable_rank", "observable_rank"),
+    "servo-constraints": ("point", "basis", "A", "C", "eigenvalues", "modes"),
+    "equilibria": ("count", "complete", "found"),
+    "series": ("sensitivities",),
+}  # fmt: skip
+ROUNDING = 1e-6  # numbers below are rounding errors; a change in the seventh digit is one, too
+
+
+@pytest.fixture(scope="module", params=RESULTS)
+def result(request):
+    text, made = RESULTS[request.param]
+    scene = holonom.system(text)
+    return scene.description, json.loads(json.dumps(made(scene))), VERIFIED[request.param]
+
+
+def test_a_true_result_agrees(result):
+    description, content, _ = result
+    found = verify_result(description, content)
+    assert (found.verdict, found.detail) == (Verdict.AGREES, "")
+
+
+def leaves(part, path=()):
+    """Paths to numbers and truth values that are no rounding errors."""
+    if isinstance(part, dict | list):
+        for key, each in part.items() if isinstance(part, dict) else enumerate(part):
+            yield from leaves(each, (*path, key))
+    elif isinstance(part, bool | int) or (
+        (not isinstance(part, str) or path[0] == "sensitivities")
+        and (not Fraction(part) or abs(Fraction(part)) > ROUNDING)
+    ):
+        yield path
+
+
+def changed(value, draw):
+    """A wrong value."""
+    if isinstance(value, bool):
+        return not value
+    if isinstance(value, int):
+        return value + draw.choice([-1, 1])
+    number = Fraction(value)
+    wrong = draw.choice([-number, number + number / 1000, number - Fraction(1, 20), 2 * number])
+    wrong = number + 1 if wrong == number else wrong
+    return str(wrong) if isinstance(value, str) else float(wrong)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_wrong_result_disagrees(result, seed):
+    description, content, verified = result
+    draw = random.Random(seed)
+    for entry in verified:
+        places = list(leaves(content[entry], (entry,)))
+        *path, last = draw.choice(places)
+        wrong = copy.deepcopy(content)
+        part = wrong
+        for key in path:
+            part = part[key]
+        part[last] = changed(part[last], draw)
+        found = verify_result(description, wrong)
+        assert found.verdict is Verdict.DISAGREES, (path, last, part[last])
+
+
+@pytest.mark.parametrize(("place", "claimed"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
+def test_a_wrong_stability_disagrees(place, claimed):
+    """The bead is stable off the axis, and unstable at the lowest and the highest point."""
+    scene = holonom.system(HOOP)
+    content = published(Publication.EQUILIBRIA, scene.equilibria().document())
+    assert [each["stability"] for each in content["found"]] == ["stable", "unstable", "unstable", "stable"]
+    content["found"][place]["stability"] = claimed
+    assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
+
+
+def test_a_result_of_another_kind_is_refused(tmp_path):
+    file = tmp_path / "other.json"
+    file.write_text('{"format": "holonom-check"}')
+    with pytest.raises(HolonomError) as refused:
+        read_result(file)
+    assert refused.value.kind is ErrorKind.NOT_A_DOCUMENT
+
+
+def test_check_takes_a_result(holonom_here, write_scene, tmp_path):
+    scene, file = write_scene(HOOP), tmp_path / "found.json"
+    assert holonom_here("equilibria", scene, "--json", file).returncode == 0
+    assert holonom_here("check", scene, "--result", file).returncode == 0
+    content = json.loads(file.read_text())
+    content["found"][0]["coordinates"]["r"] += 1e-3
+    file.write_text(json.dumps(content))
+    answer = holonom_here("check", scene, "--result", file, "--json", "-")
+    last = json.loads(answer.stdout)["equations"][-1]
+    assert (answer.returncode, last["id"], last["verdict"]) == (1, "result", "disagrees")
