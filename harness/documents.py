@@ -82,12 +82,12 @@ def ask(
     if not isinstance(file, Source):
         return written(*ask_all([question], file, settings, limits))
     key = tuple(sorted(settings.items()))
-    if (question, key) not in file.answers:
+    if (question.writer(), key) not in file.answers:
         questions = [question, *(each for each, given in file.waiting if given == settings)]
         file.waiting = [each for each in file.waiting if each[1] != settings]
         answers = ask_all(questions, file, settings, limits)
-        file.answers |= {(each, key): answer for each, answer in zip(questions, answers, strict=True)}
-    return written(file.answers.pop((question, key)))
+        file.answers |= {(each.writer(), key): answer for each, answer in zip(questions, answers, strict=True)}
+    return written(file.answers.pop((question.writer(), key)))
 
 
 def ask_later(document: Document, file: Source, *arguments: Argument, settings: Mapping[str, str]) -> None:
@@ -95,9 +95,13 @@ def ask_later(document: Document, file: Source, *arguments: Argument, settings: 
 
     Parameters
     ----------
-    document, *arguments, settings : Document, Argument, mapping of str to str
-        As for `ask`, which returns the answer.
+    document : Document
+        The document, which `ask` returns.
     file : Source
+        As for `ask_all`.
+    *arguments : None, int, Fraction, str or sequence of these
+        As for `ask`.
+    settings : mapping of str to str
         As for `ask_all`.
     """
     file.waiting.append((Question(document, arguments), settings))

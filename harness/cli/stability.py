@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -10,18 +10,34 @@ from ..options import options_of
 from ..program.request import Request
 from ..sandbox import Limits
 from ..stability.request import AlongRequest, EquilibriaRequest, LinearizationRequest
+from .background import run_in_background
 from .group import holonom
 from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
+
+if TYPE_CHECKING:
+    from ..scene import Scene
 
 
 @holonom.command(examples=["linearize examples/pendulum.mac --at 2", "linearize examples/crane.mac --json -"])
 @asks_one_scene()
 @takes(*options_of(LinearizationRequest))
+@click.option(
+    "--plot",
+    "plot_file",
+    metavar="FILE.svg|.png",
+    type=OutputFile(),
+    help="Plot eigenvalues and modes.",
+)
 @writes_json
 @runs_scenes
 def linearize(
-    scene_file: Path, request: Request, options: dict[str, Any], json_file: Path | None, limits: Limits
+    scene_file: Path,
+    request: Request,
+    options: dict[str, Any],
+    plot_file: Path | None,
+    json_file: Path | None,
+    limits: Limits,
 ) -> int:
     """Linearise the motion of a SCENE.
 
@@ -29,9 +45,12 @@ def linearize(
     """
     from ..display.stability import show_linearization
     from ..formats import Publication, published
-    from ..scene import Scene
+    from ..simulation.output import require_formats
 
-    found = Scene(scene_file, request.scene, request.settings, limits).linearize(**options)
+    require_formats(None, plot_file)
+    found = _described(scene_file, request, limits).linearize(**options)
+    if plot_file is not None:
+        found.plot().save(plot_file)
     present(published(Publication.LINEARIZED, found.document()), json_file, show_linearization, found)
     return 0
 
@@ -56,9 +75,8 @@ def linearize_along(
     """
     from ..display.stability import show_linearized_motion
     from ..formats import Publication, published
-    from ..scene import Scene
 
-    found = Scene(scene_file, request.scene, request.settings, limits).linearize_along(**options)
+    found = _described(scene_file, request, limits).linearize_along(**options)
     present(published(Publication.LINEARIZED_ALONG, found.document()), json_file, show_linearized_motion, found)
     return 0
 
@@ -103,7 +121,6 @@ def equilibria(
     from ..display.stability import show_branches, show_equilibria
     from ..formats import Publication, published
     from ..program.request import read_settings
-    from ..scene import Scene
     from ..simulation.output import require_formats
     from ..sweeps.axes import read_axes
 
@@ -111,7 +128,7 @@ def equilibria(
         raise click.UsageError("--plot draws what --over asks for")
     require_formats(None, plot_file)
     values = {name: float(Fraction(text)) for name, text in read_settings(controls).items()}
-    scene = Scene(scene_file, request.scene, request.settings, limits)
+    scene = _described(scene_file, request, limits)
     if over is None:
         found = scene.equilibria(**options, **values)
         present(published(Publication.EQUILIBRIA, found.document()), json_file, show_equilibria, found)
@@ -123,3 +140,17 @@ def equilibria(
     documents = [published(Publication.EQUILIBRIA, each) for each in branches.documents()]
     present(documents, json_file, show_branches, branches)
     return 0
+
+
+def _described(scene_file: Path, request: Request, limits: Limits) -> "Scene":
+    """Return a scene with its description. Import modules in the background."""
+    from ..scene import Scene
+
+    scene = Scene(scene_file, request.scene, request.settings, limits)
+    with run_in_background(scene_file, limits, _import_linearization):
+        _ = scene.description
+    return scene
+
+
+def _import_linearization() -> None:
+    from ..stability import linearization  # noqa: F401

@@ -1,4 +1,4 @@
-"""Verdicts on linear systems and equilibria: the documents of `linearize` and `equilibria`.
+"""Verdicts on documents of `linearize` and `equilibria`.
 
 Residuals and gradients are SymPy's, of the description alone. Nothing is solved a second time in the same way:
 
@@ -34,8 +34,8 @@ ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 ENERGY = sp.Symbol("energy", real=True)
 
 
-class Claim(NamedTuple):
-    """What should vanish, and the sizes of its terms."""
+class Condition(NamedTuple):
+    """A difference that should vanish, with the sizes of its terms."""
 
     what: str
     difference: Any
@@ -43,7 +43,7 @@ class Claim(NamedTuple):
 
 
 class DescribedEquations:
-    """The equations of a described scene and their gradients, at points in double precision.
+    """The equations of a described scene and their gradients, in double precision.
 
     Controls that servo-constraints or prescribed reactions move are the last coordinates.
     """
@@ -58,7 +58,7 @@ class DescribedEquations:
         self.found = tuple(u for u in system.controls if u not in (*self.controls, *self.coordinates))
         self.multipliers, self._system, self._names = system.multipliers, system, {}
         kept = [*system.constraints, *map(exact, scene.servo_constraints)]
-        rates = [system.total_rate(f) for f in kept]
+        rates = [system.time_derivative(f) for f in kept]
         self.outputs = tuple(scene.outputs)
         momenta = gradient(system.kinetic_energy, system.velocities)
         L = system.kinetic_energy - system.potential_energy
@@ -67,7 +67,7 @@ class DescribedEquations:
             "equation": IndependentEquations(system).motion,
             "constraint": kept,
             "rate": rates,
-            "acceleration": [system.total_rate(f) for f in rates],
+            "acceleration": [system.time_derivative(f) for f in rates],
             "output": [exact(scene.outputs[each]).subs(ENERGY, energy) for each in self.outputs],
         }
         mass = [entry for p in momenta for entry in gradient(p, system.velocities)]
@@ -80,7 +80,7 @@ class DescribedEquations:
             "du": tuple(dotted("dot", u) for u in self.controls),
             "ddu": tuple(dotted("ddot", u) for u in self.controls),
         }
-        parts: dict[str, list[sp.Expr]] = {"mass": mass, "mass_rate": [system.total_rate(entry) for entry in mass]}
+        parts: dict[str, list[sp.Expr]] = {"mass": mass, "mass_rate": [system.time_derivative(entry) for entry in mass]}
         for row, expressions in self._rows.items():
             parts[row] = list(expressions)
             for group, symbols in self._groups.items():
@@ -170,19 +170,19 @@ def _between_switchings(expression: sp.Expr) -> sp.Expr:
     return expression.replace(sp.DiracDelta, lambda *_: sp.Integer(0))
 
 
-def verify(claims: Iterator[Claim]) -> CheckResult:
-    """Return the verdict on claims: the first that does not hold, if any.
+def verify(conditions: Iterator[Condition]) -> CheckResult:
+    """Return the verdict on conditions: the first that does not hold, if any.
 
     Parameters
     ----------
-    claims : iterator of Claim
+    conditions : iterator of Condition
 
     Returns
     -------
     CheckResult
     """
     try:
-        for what, difference, size in claims:
+        for what, difference, size in conditions:
             if not np.all(np.abs(difference) <= 10.0**-DIGITS * np.maximum(np.abs(size), np.finfo(float).tiny)):
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, f"{what} does not hold")
     except IrregularPoint:
@@ -193,8 +193,8 @@ def verify(claims: Iterator[Claim]) -> CheckResult:
 # ---- a linear system -------------------------------------------------------------------------------------------------
 
 
-def claims_of_linearization(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Claim]:
-    """Yield the claims of a document of `linearize`.
+def conditions_on_linearization(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+    """Yield the conditions on a document of `linearize`.
 
     Parameters
     ----------
@@ -205,116 +205,116 @@ def claims_of_linearization(equations: DescribedEquations, content: Mapping[str,
 
     Yields
     ------
-    Claim
+    Condition
     """
     q, v, a, u = (equations.names(group) for group in ("q", "v", "a", "u"))
     reactions, point, outputs = equations.names("lambda"), content["point"], content["outputs"]
-    yield Claim("coordinates", content["coordinates"] != q)
-    yield Claim("controls", content["controls"] != u)
+    yield Condition("coordinates", content["coordinates"] != q)
+    yield Condition("controls", content["controls"] != u)
     solved = [name for name in outputs if name in reactions]
-    yield Claim("outputs", outputs != [*q, *v, *solved, *equations.outputs])
-    yield from _claims_of_point(equations, content)
+    yield Condition("outputs", outputs != [*q, *v, *solved, *equations.outputs])
+    yield from _conditions_on_point(equations, content)
     here = equations.at(point)
     N, mass = np.array(content["basis"]).reshape(len(q), -1), here["mass"]
     columns = {name: np.hstack([content[name[0]], *_parts(content, name[1])]) for name in ("AB", "CD")}
     rates, rows = columns["AB"], columns["CD"]
     n, m, width = len(q), N.shape[1], rows.shape[1]
-    yield Claim("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
-    yield Claim("number of states", rates.shape != (2 * m, width) or len(rows) != len(outputs))
+    yield Condition("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
+    yield Condition("number of states", rates.shape != (2 * m, width) or len(rows) != len(outputs))
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
     solution[[reactions.index(name) for name in solved]] = rows[2 * n :][: len(solved)]
     inputs = np.eye(width)[2 * m :].reshape(3, len(u), width)
     identity = np.eye(2 * m, width)
     xi, eta = identity[:m], identity[m:]
-    yield Claim("N^T mass N = 1", N.T @ mass @ N - np.eye(m))
-    yield Claim("basis", Q[:, :m] - N, np.abs(N))
+    yield Condition("N^T mass N = 1", N.T @ mass @ N - np.eye(m))
+    yield Condition("basis", Q[:, :m] - N, np.abs(N))
     for name, rows_of, state in (("coordinates", Q, xi), ("velocities", V, eta)):
         size = 1 + _product_sizes(N.T @ mass, rows_of)
-        yield Claim(f"tangent coordinates of {name}", N.T @ mass @ rows_of - state, size)
+        yield Condition(f"tangent coordinates of {name}", N.T @ mass @ rows_of - state, size)
     known = {"q": Q, "v": V, "lambda": solution, **dict(zip(("u", "du", "ddu"), inputs, strict=True))}
     for row in ("constraint", "rate"):
-        yield Claim(f"deviation of each {row}", *_deviation(here, row, known))
+        yield Condition(f"deviation of each {row}", *_deviation(here, row, known))
     forces = np.vstack([here["equation_by_a"], here["acceleration_by_a"]])
     others = [_deviation(here, row, known) for row in ("equation", "acceleration")]
     missed, size = (np.vstack(each) for each in zip(*others, strict=True))
     accelerations = _least(forces, -missed)
     size = size + _product_sizes(forces, accelerations)
-    yield Claim("equations of motion of deviations", forces @ accelerations + missed, size)
+    yield Condition("equations of motion of deviations", forces @ accelerations + missed, size)
     mass_rate = here["mass_rate"]
     turning = np.vstack([-here["rate_by_q"] @ N, -N.T @ mass_rate @ N / 2])
     moving = _least(np.vstack([here["constraint_by_q"], N.T @ mass]), turning)
     both = [(moving.T @ mass + N.T @ mass_rate), N.T @ mass]
     for name, first, second, given in (("xi", Q, V, rates[:m]), ("eta", V, accelerations, rates[m:])):
         size = _product_sizes(both[0], first) + _product_sizes(both[1], second)
-        yield Claim(f"rates of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given))
+        yield Condition(f"rates of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given))
     own, size = _deviation(here, "output", known | {"a": accelerations})
     given = rows[2 * n + len(solved) :]
-    yield Claim("outputs of the scene in C and D", own - given, size + np.abs(given))
-    yield from _claims_of_modes(content, N, mass)
-    yield from _claims_of_ranks(content)
+    yield Condition("outputs of the scene in C and D", own - given, size + np.abs(given))
+    yield from _conditions_on_modes(content, N, mass)
+    yield from _conditions_on_ranks(content)
 
 
-def _claims_of_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Claim]:
+def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
     point, scene = content["point"], equations.motion.scene
     names = [name for group in ("q", "v", "a", "lambda", "u", "du", "ddu") for name in equations.names(group)]
-    yield Claim("names of the point", set(point) != {"t", *names})
+    yield Condition("names of the point", set(point) != {"t", *names})
     sizes = {group: max((abs(point[name]) for name in equations.names(group)), default=0.0) for group in "qva"}
     moving = max(sizes["v"], sizes["a"])
-    yield Claim("rest", moving if content["at_rest"] else not moving, 1 + sizes["q"])
+    yield Condition("rest", moving if content["at_rest"] else not moving, 1 + sizes["q"])
     if content["at"] is not None:
-        yield Claim("time", content["at"] != point["t"])
+        yield Condition("time", content["at"] != point["t"])
         law = equations.law(point["t"])
-        yield from (Claim(f"law of {name}", point[name] - x, 1 + abs(x)) for name, x in law.items())
+        yield from (Condition(f"law of {name}", point[name] - x, 1 + abs(x)) for name, x in law.items())
         if content["at"] == float(equations.motion.first_time):
             for name, value in scene.initial_state.trees.items():
                 x = float(equations.motion.number_of(value))
-                yield Claim(f"initial value of {name}", point.get(name, x) - x, 1 + abs(x))
+                yield Condition(f"initial value of {name}", point.get(name, x) - x, 1 + abs(x))
     reactions = equations.motion.reactions.at(Taylor(0), mp.mpf(point["t"]), equations.motion.parameters())
     for name, row in reactions.items():
-        yield Claim(f"prescribed {name}", point[name] - float(row[0]), 1 + abs(float(row[0])))
+        yield Condition(f"prescribed {name}", point[name] - float(row[0]), 1 + abs(float(row[0])))
     here = equations.at(point)
     for row in ("constraint", "rate", "acceleration", "equation"):
         sizes = sum(
             np.abs(here[f"{row}_by_{group}"]) @ np.array([abs(point[name]) for name in equations.names(group)])
             for group in ("q", "v", "a", "lambda", "u", "du", "ddu")
         )
-        yield Claim(f"each {row} at the point", here[row], 1 + sizes)
+        yield Condition(f"each {row} at the point", here[row], 1 + sizes)
 
 
-def _claims_of_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) -> Iterator[Claim]:
+def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) -> Iterator[Condition]:
     A, m = np.array(content["A"]).reshape(2 * N.shape[1], -1), N.shape[1]
     values, modes = (_complex(content[name]) for name in ("eigenvalues", "modes"))
-    yield Claim("number of eigenvalues", len(values) != 2 * m or modes.shape != (len(N), 2 * m))
+    yield Condition("number of eigenvalues", len(values) != 2 * m or modes.shape != (len(N), 2 * m))
     size = np.linalg.norm(A, 2) if m else 1.0
     powers = np.eye(2 * m)
     for k in range(1, 2 * m + 1):
         powers = powers @ (A / (size or 1.0))
         total = np.sum((values / (size or 1.0)) ** k)
-        yield Claim(f"sum of the eigenvalues to the power {k}", np.trace(powers) - total, 2 * m)
+        yield Condition(f"sum of the eigenvalues to the power {k}", np.trace(powers) - total, 2 * m)
     for value, mode in zip(values, modes.T, strict=True):
         xi = N.T @ mass @ mode
-        yield Claim("modes are tangent", N @ xi - mode, 1 + np.abs(N) @ np.abs(xi))
+        yield Condition("modes are tangent", N @ xi - mode, 1 + np.abs(N) @ np.abs(xi))
         x = np.concatenate([xi, np.linalg.lstsq(A[:m, m:], value * xi - A[:m, :m] @ xi, rcond=None)[0]])
-        yield Claim("mode of an eigenvalue", A @ x - value * x, (size or 1.0) * np.linalg.norm(x))
-        yield Claim("largest entry of a mode", np.max(np.abs(mode), initial=0.0) - 1 if xi.any() else 0.0)
-    yield Claim("frequencies", np.abs(values) / (2 * np.pi) - content["frequencies"], np.abs(values))
+        yield Condition("mode of an eigenvalue", A @ x - value * x, (size or 1.0) * np.linalg.norm(x))
+        yield Condition("largest entry of a mode", np.max(np.abs(mode), initial=0.0) - 1 if xi.any() else 0.0)
+    yield Condition("frequencies", np.abs(values) / (2 * np.pi) - content["frequencies"], np.abs(values))
     damped = np.where(values, -values.real / np.where(values, np.abs(values), 1), 0)
-    yield Claim("damping", damped - content["damping"])
+    yield Condition("damping", damped - content["damping"])
 
 
-def _claims_of_ranks(content: Mapping[str, Any]) -> Iterator[Claim]:
+def _conditions_on_ranks(content: Mapping[str, Any]) -> Iterator[Condition]:
     A, C = np.array(content["A"]), np.array(content["C"])
     b_u, b_du, b_ddu = _parts(content, "B")
     for name, matrix, entering in (
         ("controllable", A, b_u + A @ (b_du + A @ b_ddu)),
         ("observable", A.T, C.T),
     ):
-        yield Claim(f"{name}_rank", content[f"{name}_rank"] != _reached(matrix, entering))
+        yield Condition(f"{name}_rank", content[f"{name}_rank"] != _reached(matrix, entering))
 
 
 def _reached(A: Matrix, B: Matrix) -> int:
-    """Return Kalman's rank: the states less the largest invariant space of functionals that vanish on B."""
+    """Return Kalman's rank, by the invariant functionals that vanish on B."""
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / (np.linalg.norm(balanced) or 1.0), B / scale[:, None]
     lengths = np.linalg.norm(B, axis=0)
@@ -341,13 +341,13 @@ def _complex(pairs: Any) -> Matrix:
 
 
 def _deviation(here: Mapping[str, Matrix], row: str, known: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
-    """Return the deviation of expressions, and the sizes of its terms."""
+    """Return the deviation of expressions, with the sizes of terms."""
     terms = [(here[f"{row}_by_{group}"], each) for group, each in known.items()]
     return sum(a @ b for a, b in terms), sum(_product_sizes(a, b) for a, b in terms)
 
 
 def _product_sizes(a: Matrix, b: Matrix) -> Matrix:
-    """Return the sizes of the terms of a product, where zeros may be rounding errors."""
+    """Return sizes of the terms of a product. Zeros may be rounding errors."""
     a, b = np.abs(a), np.abs(b)
     return a @ b + ROUNDED * a.sum(axis=1)[:, None] * b.max(initial=0.0)
 
@@ -365,8 +365,8 @@ def _sizes(*matrices: Matrix) -> Vector:
 # ---- states at rest --------------------------------------------------------------------------------------------------
 
 
-def claims_of_equilibria(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Claim]:
-    """Yield the claims of a document of `equilibria`.
+def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+    """Yield the conditions on a document of `equilibria`.
 
     Parameters
     ----------
@@ -377,57 +377,57 @@ def claims_of_equilibria(equations: DescribedEquations, content: Mapping[str, An
 
     Yields
     ------
-    Claim
+    Condition
     """
     q, v, a, reactions = (equations.names(group) for group in ("q", "v", "a", "lambda"))
     controls, found = content["controls"], content["found"]
     rates = [name for group in ("du", "ddu") for name in equations.names(group)]
     at_rest = {"t": float(equations.motion.first_time), **dict.fromkeys((*v, *a, *rates), 0.0), **controls}
-    yield Claim("controls", list(controls) != equations.names("u"))
-    yield Claim("complete", content["complete"] != (len(found) == content["count"] and all(_of(found, "isolated"))))
-    yield Claim("names", _of(found, "name") != [f"e{k}" for k in range(1, len(found) + 1)])
-    yield from _claims_of_turns(equations, content, at_rest)
+    yield Condition("controls", list(controls) != equations.names("u"))
+    yield Condition("complete", content["complete"] != (len(found) == content["count"] and all(_of(found, "isolated"))))
+    yield Condition("names", _of(found, "name") != [f"e{k}" for k in range(1, len(found) + 1)])
+    yield from _conditions_on_turns(equations, content, at_rest)
     known: list[Vector] = []
     for each in found:
         place = f"{each['name']}: "
-        yield Claim(f"{place}names", [*each["coordinates"]] != q or [*each["multipliers"]] != reactions)
+        yield Condition(f"{place}names", [*each["coordinates"]] != q or [*each["multipliers"]] != reactions)
         position = np.array(list(each["coordinates"].values()))
         turning = np.isin(q, content["turns"])
         for other in known:
             apart = position - other
             apart[turning] -= 2 * np.pi * np.round(apart[turning] / (2 * np.pi))
             same = np.all(np.abs(apart) <= 10.0**-DIGITS * (1 + np.abs(position)))
-            yield Claim(f"{place}another equilibrium", bool(same))
+            yield Condition(f"{place}another equilibrium", bool(same))
         known.append(position)
         here = equations.at({**at_rest, **each["coordinates"], **each["multipliers"]})
         forces = np.abs(list(each["multipliers"].values()))
         size = 1 + np.abs(here["equation_by_q"]) @ np.abs(position) + np.abs(here["equation_by_lambda"]) @ forces
-        yield Claim(f"{place}balance of forces", here["equation"], size)
+        yield Condition(f"{place}balance of forces", here["equation"], size)
         size = 1 + np.abs(here["constraint_by_q"]) @ np.abs(position)
-        yield Claim(f"{place}constraints", here["constraint"], size)
-        yield from _claims_of_stability(place, equations, here, each)
+        yield Condition(f"{place}constraints", here["constraint"], size)
+        yield from _conditions_on_stability(place, equations, here, each)
 
 
-def _claims_of_turns(
+def _conditions_on_turns(
     equations: DescribedEquations, content: Mapping[str, Any], at_rest: Mapping[str, float]
-) -> Iterator[Claim]:
+) -> Iterator[Condition]:
     q, reactions = (equations.names(group) for group in ("q", "lambda"))
     drawn = np.random.default_rng(1).normal(size=len(q) + len(reactions))
     point = {**at_rest, **dict(zip((*q, *reactions), map(float, drawn), strict=True))}
     for name in content["turns"]:
         here, there = (equations.at({**point, name: point[name] + turn}) for turn in (0.0, 2 * np.pi))
         for row in ("equation", "constraint"):
-            yield Claim(f"turn of {name}", there[row] - here[row], 1 + np.abs(here[row]))
+            yield Condition(f"turn of {name}", there[row] - here[row], 1 + np.abs(here[row]))
 
 
-def _claims_of_stability(
+def _conditions_on_stability(
     place: str, equations: DescribedEquations, here: Mapping[str, Matrix], each: Mapping[str, Any]
-) -> Iterator[Claim]:
+) -> Iterator[Condition]:
     n = len(here["equation"])
     J, pushing = here["constraint_by_q"], here["equation_by_lambda"][:, equations.reacting]
     N = scipy.linalg.null_space(J, rcond=10.0**-DIGITS)
     W = scipy.linalg.null_space(pushing.T, rcond=10.0**-DIGITS) if pushing.size else np.eye(n)
-    yield Claim(f"{place}number of eigenvalues", len(each["eigenvalues"]) != 2 * N.shape[1])
+    yield Condition(f"{place}number of eigenvalues", len(each["eigenvalues"]) != 2 * N.shape[1])
     M, D, K = (W.T @ here[f"equation_by_{group}"] @ N for group in ("a", "v", "q"))
     m = len(K)
     one, none = np.eye(m), np.zeros((m, m))
@@ -438,21 +438,21 @@ def _claims_of_stability(
     for value in truth:  # close ones of a multiple eigenvalue have half the digits
         nearest = min(left, key=lambda z, value=value: abs(z - value))
         left.remove(nearest)
-        yield Claim(f"{place}eigenvalue", nearest - value, size * 10.0 ** (DIGITS // 2))
+        yield Condition(f"{place}eigenvalue", nearest - value, size * 10.0 ** (DIGITS // 2))
     stiff = np.linalg.svd(K, compute_uv=False)
     if each["isolated"]:
-        yield Claim(f"{place}isolated", bool(m and stiff[-1] <= 10.0**-DIGITS * stiff[0]))
+        yield Condition(f"{place}isolated", bool(m and stiff[-1] <= 10.0**-DIGITS * stiff[0]))
     parts, clear = truth.real, 10.0**-DIGITS * size
     match each["stability"]:
         case "asymptotically stable":
-            yield Claim(f"{place}asymptotic stability", bool(np.any(parts >= -clear)))
+            yield Condition(f"{place}asymptotic stability", bool(np.any(parts >= -clear)))
         case "unstable":
-            yield Claim(f"{place}instability", not np.any(parts > clear))
+            yield Condition(f"{place}instability", not np.any(parts > clear))
         case "stable":
             symmetric = N.T @ here["equation_by_q"] @ N if len(N) == n else K
             forced = any(force != 0 for force in equations.motion_forces)
             positive = m == 0 or np.linalg.eigvalsh((symmetric + symmetric.T) / 2)[0] > 0
-            yield Claim(f"{place}minimum of the energy", forced or not positive)
+            yield Condition(f"{place}minimum of the energy", forced or not positive)
 
 
 def _of(found: Sequence[Mapping[str, Any]], key: str) -> list[Any]:

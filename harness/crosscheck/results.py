@@ -24,7 +24,7 @@ from .described_motion import DescribedMotion
 from .digits import DIGITS
 from .irregular_point import IrregularPoint
 from .law import Law
-from .linearized import DescribedEquations, claims_of_equilibria, claims_of_linearization, verify
+from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
 from .motion_series import values_of_equations
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
@@ -83,11 +83,11 @@ def verify_result(description: Description, content: Content) -> EquationVerdict
 
 
 def _verify_linearization(description: Description, content: Content) -> CheckResult:
-    return verify(claims_of_linearization(DescribedEquations(description, content["scene"]), content))
+    return verify(conditions_on_linearization(DescribedEquations(description, content["scene"]), content))
 
 
 def _verify_equilibria(description: Description, content: Content) -> CheckResult:
-    return verify(claims_of_equilibria(DescribedEquations(description, content["scene"]), content))
+    return verify(conditions_on_equilibria(DescribedEquations(description, content["scene"]), content))
 
 
 def _verify_derivatives(description: Description, content: Content) -> CheckResult:

@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -123,7 +123,7 @@ def _frames(film: Film, suffix: str) -> bytes:
         axes = figure.subplots()
         axes.set(xlim=(left - room, right + room), ylim=(low - room, high + room), aspect="equal")
         axes.set_title(visible_line(film.title), fontsize="small")
-        moves = [_artist(axes, shape, numbers) for shape, numbers in zip(film.shapes, film.numbers, strict=True)]
+        moves = [artist(axes, shape, numbers) for shape, numbers in zip(film.shapes, film.numbers, strict=True)]
         count = len(film.times)
         writer = {".gif": PillowWriter, ".mp4": FFMpegWriter}[suffix](fps=count / film.seconds)
         with writer.saving(figure, str(folder / f"film{suffix}"), DOTS):
@@ -135,19 +135,33 @@ def _frames(film: Film, suffix: str) -> bytes:
         return (folder / f"film{suffix}").read_bytes()
 
 
-def _artist(axes: "Axes", shape: Shape, numbers: NDArray[np.float64]) -> Callable[[int], None]:
-    """Add a shape. Return the function that moves it to a frame."""
+def artist(axes: "Axes", shape: Shape, numbers: NDArray[np.float64], **look: Any) -> Callable[[int], None]:
+    """Add a shape. Return the function that moves it to a frame.
+
+    Parameters
+    ----------
+    axes : Axes
+    shape : Shape
+    numbers : ndarray, shape (k, numbers of the shape)
+        Numbers at each frame, as in `Film`.
+    **look : object
+        Properties of Matplotlib's lines, in place of those of the shape.
+
+    Returns
+    -------
+    callable
+    """
     if shape is Shape.CIRCLE:
         from matplotlib.patches import Circle
 
-        circle: Artist = axes.add_patch(Circle((0, 0), 1, fill=False, color=BLUE))
+        circle: Artist = axes.add_patch(Circle((0, 0), 1, fill=False, **({"color": BLUE} | look)))
 
         def move_circle(frame: int) -> None:
             circle.set(center=numbers[frame, :2], radius=abs(numbers[frame, 2]))
 
         return move_circle
-    look = {"marker": "o", "color": VERMILION} if shape is Shape.POINT else {"color": BLUE}
-    (line,) = axes.plot([], [], **look)
+    usual = {"marker": "o", "color": VERMILION} if shape is Shape.POINT else {"color": BLUE}
+    (line,) = axes.plot([], [], **(usual | look))
 
     def move_line(frame: int) -> None:
         line.set_data(numbers[frame, ::2], numbers[frame, 1::2])

@@ -19,6 +19,7 @@ of the multipliers. Its kernel over all times are the deviations that stay free.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -27,20 +28,32 @@ import scipy.linalg
 from numpy.polynomial import legendre
 
 from ..failures import ErrorKind, HolonomError
+from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem, require_analytic
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector
 from ..simulation.nominal import nominal_of
 from ..simulation.request import SimulationRequest
+from ..simulation.result import Simulation
 from .equilibria import Stability, certain_distances
 from .linear_equations import LinearEquations, Point
-from .linearization import Linearization, linearization_of, motion_at, simulated, tangent_at
+from .linearization import (
+    Linearization,
+    linearization_of,
+    linearize,
+    motion_at,
+    require_between_switchings,
+    simulated,
+    tangent_at,
+)
 from .request import AlongRequest
 from .tangent import Tangent
 
 NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
 BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
+FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is followed
+COARSE = 1e-11  # tolerance of a step, beside the finest, by which the error of derivatives is estimated
 CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
 RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same
 VANISHING = 1e-9  # multipliers relative to the terms that they are the sum of
@@ -105,13 +118,13 @@ class LinearizedMotion(Shown):
     at : tuple of Linearization
         At each of k times, with a basis that moves along continuously.
     transition : ndarray, shape (k, 2m, 2m)
-        Phi: deviations are x(t) = Phi(t) x(t0).
+        Phi: deviations are x(t) = Phi(t) x(t0). It jumps at switchings.
     error : float
         Estimated relative error of Phi at the end. An upper bound in most cases.
     floquet : Floquet or None
         None if the motion, or its equations, do not have its duration as a period.
     free : FreeDeviations or None
-        None if the motion is not free, or has no constraints.
+        None if the motion is not free, has no constraints, or switches.
 
     Examples
     --------
@@ -226,8 +239,10 @@ def linearize_along(problem: MotionProblem, equations: LinearEquations, request:
         The motion is not analytic or cannot be followed so far; the constraints are singular on the way; the deviations
         change too fast for the error to be small.
     """
-    require_analytic(replace(problem, tables=()))
+    require_analytic(replace(problem, tables=(), signs=()))
     intervals = request.samples - 1
+    if problem.signs:
+        return _through_switchings(problem, equations, request)
     for blocks in BLOCKS:
         nodes = _Nodes(problem, equations, request, NODES * intervals * -(-blocks // intervals))
         if nodes.error <= CLOSE:
@@ -281,6 +296,18 @@ class _Node(NamedTuple):
             for row in ("equation", "acceleration")
         )
         return linear.C[2 * n : 2 * n + g], self.tangent.sizes_of_multipliers(force, constrained)
+
+
+def _through_switchings(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
+    """Linearise along a motion with signs, by its derivatives by initial values."""
+    if problem.servo:
+        raise HolonomError(ErrorKind.NO_LAW, problem.scene)
+    nodes = _SwitchedNodes(problem, equations, request)
+    error = nodes.error
+    if error > CLOSE:
+        raise HolonomError(ErrorKind.NOT_LINEARIZED_ALONG, detail=f"{error:.2g}")
+    floquet = _floquet(problem, nodes)
+    return LinearizedMotion(problem.scene, tuple(nodes.linear), nodes.transition, error, floquet, None)
 
 
 class _Nodes:
@@ -337,6 +364,62 @@ class _Nodes:
         later = node.point._replace(t=t, controls=self._equations.controls_at(t))
         there = self._equations.at(later, self._problem.independent)
         return all(np.allclose(here, there[name], rtol=RETURNED, atol=RETURNED) for name, here in node.here.items())
+
+
+class _SwitchedNodes(_Nodes):
+    """A motion through switchings, with its derivatives by initial values.
+
+    The basis depends on the state alone, so it moves along continuously. The derivatives jump with the switchings
+    (`holonom.simulation.sensitivities`), and X(t) X(t0)^-1 is Phi, with X the derivatives in the basis.
+    """
+
+    def __init__(self, problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> None:
+        self._problem, self._equations = problem, equations
+        leading = linearize(problem, equations).leading
+        self._directions = *leading, *(f"dot({q})" for q in leading)
+        intervals = request.samples - 1
+        stride = NODES * -(-FINEST // intervals)
+        motion = self._derived(request.until, stride * intervals + 1, None)
+        states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
+        self.times = np.asarray(motion.times, dtype=float)
+        bases = self._bases(states)[::stride]
+        self.times, states = self.times[::stride], states[:, ::stride]
+        for t, state in zip(self.times, states.T, strict=True):
+            require_between_switchings(problem, t, state)
+        self.points = [motion_at(problem, equations, t, state) for t, state in zip(self.times, states.T, strict=True)]
+        nodes = [_Node(point, *tangent_at(problem, equations, point)) for point in self.points]
+        self.nodes = [
+            node._replace(tangent=node.tangent.next_to(basis)) for node, basis in zip(nodes, bases, strict=True)
+        ]
+        self.linear = [
+            linearization_of(problem, equations, node.point, float(t), node.here, node.tangent)
+            for t, node in zip(self.times, self.nodes, strict=True)
+        ]
+        self.transition = self._transitions(motion, stride)
+        coarse = self._transitions(self._derived(request.until, len(self.times), COARSE), 1)[-1]
+        self.error = float(np.linalg.norm(coarse - self.transition[-1]) / or_one(np.linalg.norm(self.transition[-1])))
+
+    def _derived(self, until: Fraction | None, samples: int, tol: float | None) -> Simulation:
+        alone = replace(self._problem, observe=("trajectory",), outputs=None, controls=None)
+        asked = SimulationRequest(until=until, samples=samples, sensitivities=self._directions, tol=tol)
+        return simulated(alone, asked)
+
+    def _bases(self, states: Matrix) -> Matrix:
+        none = np.zeros(len(self._equations.coordinates)), np.zeros(len(self._equations.multipliers))
+        nodes = []
+        for t, state in zip(self.times, states.T, strict=True):
+            point = Point(t, state, *none, self._equations.controls_at(t))
+            nodes.append(_Node(point, *tangent_at(self._problem, self._equations, point)))
+        return _propagated(np.array([node.turning for node in nodes]), self.duration, nodes[0].tangent.basis)
+
+    def _transitions(self, motion: Simulation, stride: int) -> Matrix:
+        names = [[derivative_name(name, k) for k in self._directions] for name in self._problem.state]
+        moves = np.array([[motion.sensitivities[each][::stride] for each in row] for row in names])
+        found = np.array([
+            scipy.linalg.block_diag(*[node.tangent.basis.T @ node.here["equation_by_a"]] * 2) @ moves[:, :, k]
+            for k, node in enumerate(self.nodes)
+        ])  # fmt: skip
+        return found @ np.linalg.inv(found[0])
 
 
 def _propagated(rates: Matrix, duration: float, start: Matrix, nodes: int = NODES) -> Matrix:

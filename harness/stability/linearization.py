@@ -19,15 +19,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
+from ..program.drawing import Drawing
 from ..program.motion_problem import MotionProblem, computing, require_analytic
 from ..program.motion_program import names_used
 from ..program.numpy_function import NumpyFunction
+from ..program.sign_pattern import drawing_with_values
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
@@ -37,6 +39,9 @@ from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
 from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
+
+if TYPE_CHECKING:
+    from ..figures.style import Picture
 
 RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
@@ -76,6 +81,8 @@ class Linearization(Shown):
         By ``u``, ``du`` and ``ddu``.
     C : ndarray, shape (outputs, 2m)
     D : mapping of str to ndarray, shape (outputs, r)
+    drawing : Drawing or None
+        Of the system. None at an equilibrium if it needs a control law.
 
     Examples
     --------
@@ -99,6 +106,7 @@ class Linearization(Shown):
     B: Mapping[str, Matrix]
     C: Matrix
     D: Mapping[str, Matrix]
+    drawing: Drawing | None
 
     @cached_property
     def _modes(self) -> tuple[Vector, Matrix]:
@@ -223,6 +231,25 @@ class Linearization(Shown):
         a = np.block([[self.A, b_u, b_du], [np.zeros((r, size)), none, one], [np.zeros((r, size)), none, none]])
         return a, np.concatenate([b_ddu, none, one]), np.concatenate([self.C[rows], d_u, d_du], axis=1), d_ddu
 
+    def plot(self) -> "Picture":
+        """Return a figure of the eigenvalues and of the modes.
+
+        The modes are on the drawing of the system, if it has one.
+
+        Returns
+        -------
+        Picture
+
+        Raises
+        ------
+        HolonomError
+            Matplotlib is not installed.
+        """
+        from ..figures.modes import modes_figure
+        from ..figures.style import Picture
+
+        return Picture(modes_figure(self))
+
     def document(self) -> dict[str, Any]:
         """Return the content of ``holonom linearize --json`` without format and version.
 
@@ -281,14 +308,28 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     """
     require_analytic(replace(problem, signs=(), tables=()))
     t, state = state_at(problem, at)
-    _require_between_switchings(problem, t, state)
+    require_between_switchings(problem, t, state)
     return linearized(problem, equations, motion_at(problem, equations, t, state), t)
 
 
-def _require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
+def require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
     """Reject a state at which a sign changes, is held, or depends on a reaction.
 
     A switching function counts as zero beside its changes if time, coordinates and velocities move by nominal sizes.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    t : float
+        Time, in the scene's unit.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Raises
+    ------
+    HolonomError
+        It is no state between switchings.
     """
     if not problem.signs:
         return
@@ -400,7 +441,16 @@ def linearization_of(
         here["equation_by_a"],
         tangent.basis,
         *_state_space(here, tangent, len(reacting) + len(equations.found)),
+        _drawing(problem, equations, at),
     )
+
+
+def _drawing(problem: MotionProblem, equations: LinearEquations, at: float | None) -> Drawing | None:
+    if problem.drawing is None:
+        return None
+    drawing = drawing_with_values(problem)
+    moved = at is None and names_used(drawing.program) & set(equations.controls)
+    return None if moved else drawing
 
 
 def _named(equations: LinearEquations, state: Sequence[str], point: Point) -> dict[str, float]:

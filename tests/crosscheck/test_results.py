@@ -103,13 +103,13 @@ def test_a_wrong_result_disagrees(result, seed):
         assert found.verdict is Verdict.DISAGREES, (path, last, part[last])
 
 
-@pytest.mark.parametrize(("place", "claimed"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
-def test_a_wrong_stability_disagrees(place, claimed):
+@pytest.mark.parametrize(("place", "stated"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
+def test_a_wrong_stability_disagrees(place, stated):
     """The bead is stable off the axis, and unstable at the lowest and the highest point."""
     scene = holonom.system(HOOP)
     content = published(Publication.EQUILIBRIA, scene.equilibria().document())
     assert [each["stability"] for each in content["found"]] == ["stable", "unstable", "unstable", "stable"]
-    content["found"][place]["stability"] = claimed
+    content["found"][place]["stability"] = stated
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 
@@ -122,7 +122,7 @@ def test_a_result_of_another_kind_is_refused(tmp_path):
 
 
 def test_check_takes_a_result(holonom_here, write_scene, tmp_path):
-    scene, file = write_scene(HOOP), tmp_path / "found.json"
+    scene, file = write_scene(f"load(holonom)$\n{HOOP}"), tmp_path / "found.json"
     assert holonom_here("equilibria", scene, "--json", file).returncode == 0
     assert holonom_here("check", scene, "--result", file).returncode == 0
     content = json.loads(file.read_text())

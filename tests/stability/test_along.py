@@ -193,3 +193,81 @@ def test_the_command(holonom_here, write_scene):
     assert document["floquet"]["stability"] == str(Stability.UNDECIDED)
     table = holonom_here("linearize-along", write_scene(f"load(holonom)$\n{THROWN}"), "--samples", "3")
     assert "0 of 2" in table.stdout
+
+
+# ---- switchings ------------------------------------------------------------------------------------------------------
+
+DRY = """system : holonomic_system(coordinates = [x], parameters = [c], kinetic_energy = dot(x)^2/2,
+  potential_energy = [spring = x^2/2], forces = [dry = [-c*signum(dot(x))]])$
+s : holonomic_scene(system, parameter_values = [c = 1/10], time_span = [0, 8],
+  initial_state = [x = 1, dot(x) = -1/2])$"""
+
+
+def oscillation(x, v, time, c=0.1):
+    """An oscillator with dry friction: arcs of circles about the points c and -c."""
+    while True:
+        centre = -c * np.sign(v)
+        turn = np.arctan2(v, x - centre) % np.pi or np.pi
+        step = min(turn, time)
+        x, v = (
+            centre + (x - centre) * np.cos(step) + v * np.sin(step),
+            v * np.cos(step) - (x - centre) * np.sin(step),
+        )
+        if step == time:
+            return np.array([x, v])
+        time, v = time - step, -1e-300 * np.sign(x)
+
+
+def test_deviations_jump_where_friction_turns():
+    along = holonom.system(DRY).linearize_along(until="79/10", samples=6)
+    step = 1e-5
+    for t, phi in zip(along.times, along.transition, strict=True):
+        ahead, behind = (
+            np.column_stack([oscillation(*(np.array([1, -0.5]) + side * move), t) for move in step * np.eye(2)])
+            for side in (1, -1)
+        )
+        assert phi == pytest.approx((ahead - behind) / (2 * step), abs=1e-8)
+    assert along.error < 1e-10
+
+
+def test_sticking_forgets_the_velocity_and_has_no_linear_system():
+    scene = holonom.system(DRY.replace("c = 1/10", "c = 4").replace("x^2/2]", "8*x^2]"))
+    with pytest.raises(HolonomError) as refused:
+        scene.linearize_along(until=8, samples=3)
+    assert refused.value.kind is ErrorKind.NOT_ANALYTIC
+
+
+MEISSNER = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+  forces = [spring = [-({a} + {b}*signum(sin(%pi*t + 1)))*x]])$
+s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], nominal = [x = 1], time_span = [0, 2])$"""
+
+
+@pytest.mark.parametrize(("a", "b", "stability"), [(5, 2, "undecided"), (10, 4, "unstable")])
+def test_square_wave_has_the_multipliers_of_meissners_equation(a, b, stability):
+    """Meissner 1918: the trace of the product of two rotations, each of half a period."""
+    floquet = holonom.system(MEISSNER.format(a=a, b=b)).linearize_along(until=2, samples=3).floquet
+    one, two = np.sqrt(a + b), np.sqrt(a - b)
+    trace = 2 * np.cos(one) * np.cos(two) - (one / two + two / one) * np.sin(one) * np.sin(two)
+    assert np.sum(floquet.multipliers) == pytest.approx(trace, abs=1e-9)
+    assert np.prod(floquet.multipliers) == pytest.approx(1)
+    assert floquet.stability == stability
+
+
+DRY_PENDULUM = """system : holonomic_system(coordinates = [x, y], parameters = [e],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = 10*y],
+  forces = [dry = [-signum(dot(x))/2, 0]], constraints = [x^2 + y^2 - 1])$
+s : holonomic_scene(system, initial_state = [x = 3/5 + e, dot(x) = 1/2 - 2*e], initial_guess = [y = -4/5, dot(y) = 0],
+  time_span = [0, 2])$"""
+
+
+def test_pendulum_with_friction_against_differences_of_motions():
+    scene = holonom.system(DRY_PENDULUM)
+    along = scene.with_settings(e=0).linearize_along(until="19/10", samples=5)
+    step = 1e-5
+    ahead, behind = (scene.simulate(until="19/10", samples=5, e=side * step) for side in (1, -1))
+    names = ["x", "y", "dot(x)", "dot(y)"]
+    moved = np.array([ahead[name] - behind[name] for name in names]) / (2 * step)
+    start = np.concatenate([each.T @ along[0].mass @ part for each, part in
+                            ((along[0].basis, moved[:2, 0]), (along[0].basis, moved[2:, 0]))])  # fmt: skip
+    found = np.array([[along.response(name)[k] @ start for k in range(5)] for name in names])
+    assert found == pytest.approx(moved, abs=1e-7)

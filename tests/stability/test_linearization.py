@@ -309,6 +309,41 @@ def test_the_command(holonom_here):
     assert (table.returncode, "± 3.43103 i" in table.stdout) == (0, True)
 
 
+def test_modes_are_drawn_about_the_state(holonom_here, tmp_path):
+    figure = tmp_path / "modes.svg"
+    assert holonom_here("linearize", "examples/chain.mac", "--set", "N=3", "--plot", figure).returncode == 0
+    assert figure.read_text().startswith("<?xml")
+    found = holonom.load("examples/chain.mac", N=3).linearize()
+    values, *panels = found.plot().figure.axes
+    assert values.lines[-1].get_ydata() == pytest.approx(found.eigenvalues.imag)
+    upper = found.eigenvalues.imag > 0
+    titles = [f"± {each.imag:.4g} i" for each in found.eigenvalues[upper]]
+    assert [panel.get_title("left") for panel in panels[:3]] == titles
+    for panel, mode in zip(panels, found.modes.T[upper], strict=False):
+        rest, there, _, back, _ = (np.array(line.get_xydata()) for line in panel.lines[:5])  # of the polyline
+        moved = np.ravel(there - rest)[2:]
+        assert moved / np.max(np.abs(moved)) == pytest.approx(mode.real, abs=1e-9)
+        assert there + back == pytest.approx(2 * rest)
+
+
+def test_modes_of_a_system_without_drawing_are_stems():
+    found = holonom.system(DOUBLE_PENDULUM).linearize()
+    _, *panels = found.plot().figure.axes
+    stems = [panel.containers[0].markerline.get_ydata() for panel in panels[:2]]
+    assert np.array(stems) == pytest.approx(found.modes.T[found.eigenvalues.imag >= 0].real)
+
+
+@pytest.mark.parametrize("library", ["scipy.signal", "control"])
+def test_libraries_take_the_state_space(library):
+    module = pytest.importorskip(library)
+    found = holonom.system(CART.format(y=-1)).linearize()
+    system = module.StateSpace(*found.state_space("u", ["s", "x"]))
+    assert np.sort_complex(np.linalg.eigvals(system.A)) == pytest.approx(np.sort_complex(found.eigenvalues), abs=1e-9)
+    assert (system.B.shape, system.C.shape) == ((4, 1), (2, 4))
+    driven = module.StateSpace(*found.state_space("ddot", ["s", "x"]))
+    assert driven.A.shape == (6, 6)
+
+
 # ---- outputs of the scene ------------------------------------------------------------------------------------------
 
 OBSERVED = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
