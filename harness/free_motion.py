@@ -240,7 +240,12 @@ class FreeMotion(Shown):
 
 
 def free_motion(
-    file: Source | Path, scene: str | None, settings: Mapping[str, str], limits: Limits, order: int | None = None
+    file: Source | Path,
+    scene: str | None,
+    settings: Mapping[str, str],
+    limits: Limits,
+    order: int | None = None,
+    closed_form_size: int | None = None,
 ) -> FreeMotion:
     """Ask Maxima about the free motion of a scene.
 
@@ -256,6 +261,8 @@ def free_motion(
         Limits of each run of Maxima.
     order : int or None
         Highest order of the multipliers' power series, at least 2, or None for Maxima's ``verdict_order``.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -271,9 +278,8 @@ def free_motion(
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    return with_verdicts(
-        read_free_motion(ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits))
-    )
+    asked = scene, order, closed_form_size
+    return with_verdicts(read_free_motion(ask(Document.FREE_MOTION, file, *asked, settings=settings, limits=limits)))
 
 
 def read_free_motion(text: str) -> FreeMotion:

@@ -17,7 +17,7 @@ from .failures import ErrorKind, HolonomError
 from .files import near_file, scene_file
 from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
-from .program.request import DaeRequest, Request, Solve, read_settings
+from .program.request import DaeRequest, FreeRequest, Request, Solve, read_settings
 from .sandbox import Limits, warn_unsandboxed
 from .series.request import SeriesRequest
 from .simulation.derivations import Derivations
@@ -366,8 +366,13 @@ class Scene:
         report = check_record(self.record, self.description)
         return report.with_verdicts(motion_verdicts(self.description, motions, report.seed))
 
-    def free(self) -> "FreeMotion":
+    @takes_options(*options_of(FreeRequest))
+    def free(self, options: dict[str, Any]) -> "FreeMotion":
         """Find whether the motion is free, and the control laws under which it is.
+
+        Parameters
+        ----------
+        {options}
 
         Returns
         -------
@@ -386,7 +391,7 @@ class Scene:
         """
         from .free_motion import free_motion
 
-        return free_motion(self._source, self._name, self.settings, self.limits)
+        return free_motion(self._source, self._name, self.settings, self.limits, **options)
 
     @naming_the_extra()
     def effects(self) -> "MeasuredCosts":

@@ -132,6 +132,8 @@ def test_check_and_free_answer_what_the_commands_answer(pendulum):
     assert "proved" in pendulum.check()._repr_html_()
     assert pendulum.free().scene == "lengthening_scene"
     assert "condition of free motion" in pendulum.free()._repr_html_()
+    assert pendulum.free(closed_form_size=2).condition is None
+    assert pendulum.free().condition is not None
 
 
 def test_results_print_as_the_command_line_prints_them(pendulum, released):

@@ -5,12 +5,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import click
-
+from ..options import options_of
+from ..program.request import FreeRequest
 from ..sandbox import Limits
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, asks_one_scene, limits_closed_forms, present, runs_scenes, writes_json
+from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, takes, writes_json
 
 if TYPE_CHECKING:
     from ..free_motion import FreeMotion
@@ -19,20 +19,13 @@ if TYPE_CHECKING:
 
 @holonom.command(examples=["free examples/pendulum.mac", "free examples/paper/paper.mac --scene free_motion_scene"])
 @asks_one_scene()
-@click.option(
-    "--order",
-    metavar="N",
-    type=click.IntRange(min=2),
-    help="Order of the power series that tests whether the multipliers vanish. Default: 40.",
-)
-@limits_closed_forms
+@takes(*options_of(FreeRequest))
 @writes_json
 @runs_scenes
 def free(
     scene_file: Path,
     request: "Request",
-    order: int | None,
-    closed_form_size: int | None,
+    options: dict[str, Any],
     json_file: Path | None,
     limits: Limits,
 ) -> int:
@@ -45,7 +38,7 @@ def free(
     from ..formats import Document
 
     with run_in_background(scene_file, limits, _import_readers):
-        asked = request.scene, order, closed_form_size
+        asked = request.scene, options["order"], options["closed_form_size"]
         text = ask(Document.FREE_MOTION, scene_file, *asked, settings=request.settings, limits=limits)
 
     from ..crosscheck.report import Verdict

@@ -14,7 +14,7 @@ import click
 from ..failures import HolonomError
 from ..hidden import visible
 from ..options import choices_of, kind_of, options_of, read, read_time
-from ..program.request import Request, read_settings
+from ..program.request import FreeRequest, Request, read_settings
 from ..sandbox import UNSANDBOXED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
@@ -136,12 +136,7 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
     )
 
 
-limits_closed_forms = click.option(
-    "--closed-form-size",
-    metavar="N",
-    type=click.IntRange(min=1),
-    help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
-)
+limits_closed_forms = _click_option(*options_of(FreeRequest, "closed_form_size"))
 
 
 def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:

@@ -60,7 +60,7 @@ def motion(file: Path, scene: str | None = None, until: Fraction | None = None) 
 
 
 def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return the pictures of all motions of a file: by scene, a `Motion` or `FailedRun`.
+    """Return pictures of all motions of a file: by scene, a `Motion` or `FailedRun`.
 
     Parameters
     ----------

@@ -150,7 +150,7 @@ def show_branches(console: "Console", branches: "Branches") -> None:
 
 
 def _exact_values(equilibrium: "Equilibrium") -> "Iterator[str]":
-    """Yield the exact values that the table shows rounded, without roots that have no short form."""
+    """Yield exact values with a short form that the table shows rounded."""
     for name, value in equilibrium.coordinates.items():
         text = str(equilibrium.exact.get(name, ""))
         if text not in ("", f"{value:.8g}") and "CRootOf" not in text:

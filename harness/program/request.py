@@ -62,6 +62,24 @@ def read_settings(texts: Iterable[str]) -> dict[str, str]:
     return settings
 
 
+@dataclass(frozen=True)
+class FreeRequest:
+    """A request for free motion."""
+
+    order: int | None = option(
+        None,
+        "Order of the power series that tests whether the multipliers vanish. Default: 40.",
+        metavar="N",
+        least=2,
+    )
+    closed_form_size: int | None = option(
+        None,
+        "Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
+        metavar="N",
+        least=1,
+    )
+
+
 class Index(StrEnum):
     """The form of the system, by its differentiation index."""
 

@@ -1,4 +1,4 @@
-"""Exact number and values of equilibria, if their equations are polynomial and small.
+"""Exact number and values of equilibria of small polynomial equations.
 
 The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. A coordinate that occurs in
 its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control is the rational
@@ -102,7 +102,7 @@ def _nearest(roots: Sequence[sympy.Expr], value: float) -> sympy.Expr | None:
 
 
 def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
-    """Return the real roots of an irreducible polynomial, in radicals if square roots suffice."""
+    """Return the real roots of an irreducible polynomial, in square roots if possible."""
     radicals = sympy.roots(polynomial, cubics=False, quartics=False, quintics=False, multiple=True)
     if len(radicals) < polynomial.degree():
         return polynomial.real_roots()

@@ -1,4 +1,4 @@
-"""Measurement of benchmark cases: a run for the error, then runs in turns for times.
+"""Measurement of benchmark cases: a run for the error, then others for times.
 
 A first run counts only if it is too long to be repeated, because it fills caches for the next one. heyoka's code is
 compiled without its caches.
