@@ -178,7 +178,7 @@ def page_templates(folder: Path) -> dict[str, Catalog]:
             folder,
             folder / "doctrees",
             "gettext",
-            {"exclude_patterns": [], "suppress_warnings": ["toc.not_included"]},
+            {"exclude_patterns": ["reference", "chapters", "templates"], "suppress_warnings": ["toc", "myst"]},
             status=None,
         ).build()
     return {name: _to_translate(folder / f"{name}.pot") for name in TRANSLATED}
