@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from string import Formatter
 
 import pytest
 
@@ -24,4 +25,23 @@ def failing(kind: ErrorKind, *facts: str) -> Iterator[pytest.ExceptionInfo[Holon
         yield caught
     assert caught.value.kind is kind
     told = f"{caught.value.reason} {caught.value.detail}"
-    assert [fact for fact in facts if not re.search(rf"(?<!\w){re.escape(fact)}(?!\w)", told)] == []
+    assert [fact for fact in facts if not re.search(_whole(fact), told)] == []
+
+
+def message_of(kind: ErrorKind | None, *facts: str) -> str:
+    """Return the pattern of a command's message of this kind that names these facts. None: about the command line."""
+    looks = "".join(f"(?=.*{_whole(fact)})" for fact in facts)
+    text = _pattern(kind.reason) if kind else ".+"
+    if kind and text == ".*" and kind.hints:  # what is wrong is in the detail
+        text += f" .*(?i:{'|'.join(map(_pattern, kind.hints))})"
+    return f"(?m)^holonom: error: {looks}(?:.*: )?{text}"
+
+
+def _whole(fact: str) -> str:
+    return rf"(?<!\w){re.escape(fact)}(?!\w)"
+
+
+def _pattern(template: str) -> str:
+    return "".join(
+        re.escape(text) + (".*" if name is not None else "") for text, name, *_ in Formatter().parse(template)
+    )

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
+from refusing import failing
 
 from holonom.documents import Question, ask, ask_all
 from holonom.failures import ErrorKind, HolonomError
@@ -66,9 +67,8 @@ def test_commands_publish_what_the_schema_says(command, holonom_here):
 
 
 def test_what_has_another_shape_is_refused_where_it_differs():
-    with pytest.raises(HolonomError, match=r"holonom-errata: at \$\.equations\[0\]") as raised:
+    with failing(ErrorKind.NOT_A_DOCUMENT, "$.equations[0]"):
         read(Document.ERRATA, '{"format": "holonom-errata", "version": 2, "equations": [2]}')
-    assert raised.value.kind is ErrorKind.NOT_A_DOCUMENT
 
 
 ENVELOPE = {"format": "holonom-check", "version": 2}

@@ -124,7 +124,7 @@ def test_the_prompt_shows_the_sentence_without_the_id():
 
 
 def test_a_file_without_a_system_is_refused(write_scene):
-    assert "system" in str(failure_of(write_scene('load("holonom.mac")$')))
+    assert failure_of(write_scene('load("holonom.mac")$')).refusal == "no_system"
 
 
 def test_missing_and_unreadable_files(tmp_path):
@@ -181,15 +181,15 @@ def test_statements_are_counted(text, statements):
 
 
 @pytest.mark.parametrize(
-    ("text", "error", "said"),
+    ("text", "error"),
     [
-        ("1 + 1;\n2$\n1 + 2;\n4$\n", RtestFailed, "1/2 tests passed"),
-        ("1 + 1;\n2$\n1 +* 2;\n3$\n2;\n2$\n", HolonomError, "Maxima cannot read this"),
-        ("1 + 1;\n2$\n1 + 2;\n", RtestFailed, "an input has no expected result"),
+        ("1 + 1;\n2$\n1 + 2;\n4$\n", RtestFailed),
+        ("1 + 1;\n2$\n1 +* 2;\n3$\n2;\n2$\n", HolonomError),
+        ("1 + 1;\n2$\n1 + 2;\n", RtestFailed),
     ],
 )
-def test_an_rtest_file_that_does_not_pass_whole_is_refused(text, error, said, write_scene):
-    with pytest.raises(error, match=said):
+def test_an_rtest_file_that_does_not_pass_whole_is_refused(text, error, write_scene):
+    with pytest.raises(error):
         run_rtest(write_scene(text))
 
 

@@ -60,13 +60,13 @@ def test_sparse_entries_are_found_by_their_indices_in_order():
 
 @pytest.mark.parametrize("indices", [(0, 1), (1, 3), (1,), (1, 1, 1), (True, 1)])
 def test_an_entry_out_of_place_is_refused(indices):
-    with pytest.raises(NotComparable, match="out of place"):
+    with pytest.raises(NotComparable):
         sparse_entries("A", (2, 2), (0, 1), [entry("A", *indices)])
 
 
 @pytest.mark.parametrize("stray", [entry("B", 1, 2), of("T0"), entry("A", 1, 1)])
 def test_what_is_there_twice_or_about_something_else_is_refused(stray):
-    with pytest.raises(NotComparable, match="out of place"):
+    with pytest.raises(NotComparable):
         sparse_entries("A", (2, 2), (0, 1), [entry("A", 1, 1), stray])
 
 
@@ -77,7 +77,7 @@ def test_a_residual_is_the_left_side_less_the_right():
 
 @pytest.mark.parametrize("relations", [[], [of("x"), of("y")]], ids=["fewer", "more"])
 def test_more_or_fewer_relations_than_there_are_residuals_are_refused(relations):
-    with pytest.raises(NotComparable, match="1 belong"):
+    with pytest.raises(NotComparable):
         residual_pairs("f", relations, [X])
 
 

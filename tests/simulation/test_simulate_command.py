@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,7 +13,9 @@ from pathlib import Path
 
 import pytest
 from confinement import without_notice
+from refusing import message_of
 
+from holonom.failures import ErrorKind
 from holonom.processes import descendants
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -86,22 +89,22 @@ def test_samples_and_figures_are_written(tmp_path, simulate):
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"),
+    ("options", "message"),
     [
-        (["--tol", "1e-30"], "double precision holds tolerances from 1e-16 to 1, not 1e-30"),
-        (["--until", "-1"], "the final time is not after the initial time"),
-        (["--precision", "single"], "single: expected double"),
-        (["-o", "motion.xls"], "Use .csv, .npz, .parquet."),
-        (["--plot", "motion.pdf"], "Use .svg, .png."),
-        (["-o", "/dev/full/motion.csv"], "cannot be written"),
-        (["--scene", "no_scene"], "no_scene"),
+        (["--tol", "1e-30"], message_of(ErrorKind.TOLERANCE_UNHELD, "1e-30")),
+        (["--until", "-1"], message_of(ErrorKind.NOT_AFTER_START)),
+        (["--precision", "single"], message_of(ErrorKind.NOT_A_PRECISION, "single")),
+        (["-o", "motion.xls"], message_of(ErrorKind.NO_SUCH_FORMAT, ".csv, .npz, .parquet")),
+        (["--plot", "motion.pdf"], message_of(ErrorKind.NO_SUCH_FORMAT, ".svg, .png")),
+        (["-o", "/dev/full/motion.csv"], message_of(ErrorKind.UNWRITABLE)),
+        (["--scene", "no_scene"], message_of(ErrorKind.NO_SUCH_SCENE, "no_scene")),
     ],
 )
-def test_bad_input_is_one_sentence(options, sentence, tmp_path, monkeypatch, simulate):
+def test_bad_input_is_one_sentence(options, message, tmp_path, monkeypatch, simulate):
     monkeypatch.chdir(tmp_path)
     done = simulate(PENDULUM, *options)
     assert done.returncode == 2
-    assert sentence in done.stderr
+    assert re.search(message, done.stderr)
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
     assert list(tmp_path.iterdir()) == []
@@ -124,7 +127,7 @@ def test_a_start_of_limited_digits_was_corrected_without_a_word(write_scene, sim
 def test_a_scene_without_an_end_is_refused(particle_scene, simulate):
     done = simulate(particle_scene)
     assert done.returncode == 2
-    assert "the scene has no time span. Add time_span, or pass the final time with --until" in done.stderr
+    assert re.search(message_of(ErrorKind.NO_END), done.stderr)
     assert simulate(particle_scene, "--until", "1").returncode == 0
 
 
@@ -158,4 +161,4 @@ def test_heyoka_was_called_not_installed_where_memory_was_short(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(tmp_path)}
     done = subprocess.run(asked, capture_output=True, text=True, timeout=120, env=environment)
     assert (done.returncode, without_notice(done.stderr).count("\n")) == (3, 1)
-    assert "not enough memory" in done.stderr
+    assert re.search(message_of(None, "memory"), done.stderr)

@@ -5,9 +5,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from problems import problem
+from refusing import failing
 
 from holonom.cli.motion import simulate as command
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 from holonom.simulation.engines import registry
 from holonom.simulation.output import simulation_document
 from holonom.simulation.request import EngineName, SimulationRequest
@@ -45,5 +46,5 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
 
 
 def test_added_engine_that_is_asked_for_follows_alone(toy):
-    with pytest.raises(HolonomError, match="the toy stops here"):
+    with failing(ErrorKind.NO_WAY_ON):
         simulated(engine="toy")
