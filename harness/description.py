@@ -246,7 +246,7 @@ def read_description(text: str, file: Path) -> Description:
     Raises
     ------
     HolonomError
-        It is too large, it is no description, or it holds characters that hide or reverse text.
+        It is too large, it is not a description, or it holds characters that hide or reverse text.
     """
     if len(text) > LARGEST:
         raise HolonomError(ErrorKind.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // 2**20} MiB")

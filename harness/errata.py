@@ -28,7 +28,7 @@ class PrintedEquation:
     # left side less right side as printed, less the same as derived; None where the paper agrees
     difference: str | None
     corrected: str | None  # the printed equation, mended; None where the paper agrees
-    note: str | None  # what there is to say about the transcription
+    note: str | None  # note about the transcription
     # printed_tree, difference_tree, corrected_tree: the same equations as trees that `holonom.typeset` sets in type, in
     # their own order; None where there is none
     printed_tree: Tree

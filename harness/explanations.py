@@ -23,7 +23,7 @@ ADVICE = {
     ),
     Difficulty.SINGULAR_CONFIGURATION: translatable(
         "The motion passes a singular configuration: keep the default engine, which hands over to the robust one, "
-        "and look at the energy error, which tells whether it left on the right branch."
+        "and check the energy error, which is small if it left on the right branch."
     ),
     Difficulty.STIFF: translatable(
         "The motion is stiff: keep the Taylor engine where its fast oscillation matters; where it does not, replace "
@@ -43,7 +43,7 @@ ADVICE = {
     ),
     Difficulty.FREE_CANCELLATION: translatable(
         "At the times that were kept the constraints exert no force: every multiplier is a difference that cancels, "
-        "so read values below 1e-13 of the forces as zero, and let `holonom free` tell whether the motion is free."
+        "so read values below 1e-13 of the forces as zero, and use `holonom free` to decide whether the motion is free."
     ),
     Difficulty.VANISHING_LENGTH: translatable(
         "A controlled length goes through zero, where its constraint has no gradient and no reaction can act: "

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from .failures import ErrorKind, HolonomError
 
 REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
-NO_ROOM = ("failed to map segment", "annot allocate memory")  # what the loader of libraries says
+NO_ROOM = ("failed to map segment", "annot allocate memory")  # message of the loader of libraries
 
 
 def extra_of(package: str) -> str | None:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 SCHEMAS = Path(__file__).with_name("schemas")
 VERSION = 2
-SHOWN = 200  # characters of what a validator says
+SHOWN = 200  # characters of a validator's message
 
 
 class Document(StrEnum):
@@ -83,7 +83,7 @@ def read(document: Document, text: str) -> dict[str, Any]:
     Raises
     ------
     HolonomError
-        The text is no JSON, or has another shape.
+        The text is not JSON, or has another shape.
     """
     try:
         content = json.loads(text)

@@ -54,7 +54,7 @@
   (flet ((spelt (item) (if (stringp item) (maybe-invert-string-case item) item)))
     (error 'unreadable-statement :text (apply #'format nil control (mapcar #'spelt arguments)))))
 
-;; A scene that was copied away from beside the library, or is read by another installation, means this library.
+;; A scene that was copied out of the library's folder, or is read by another installation, means this library.
 (let ((load-file (symbol-function '$load)))
   (defun $load (file)
     (funcall load-file (if (library-not-there-p file) "holonom.mac" file))))

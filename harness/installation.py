@@ -38,7 +38,7 @@ class Component:
     """A program or package that Holonom uses."""
 
     name: str
-    version: str | None  # None where it is missing or does not run; empty where it does not tell
+    version: str | None  # None if it is missing or does not run; empty if it prints none
     purpose: str  # what it serves
     needed: bool  # nothing works without it
     hint: str  # the command that installs it, or what else is to be done

@@ -13,7 +13,7 @@ from . import elliptic
 from .functions import FUNCTIONS
 from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
 
-DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
+DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 DOUBLE_BITS = 53
 
 CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit, "EulerGamma": S.EulerGamma}

@@ -86,7 +86,7 @@ class Run:
     limits: Limits
     settings: Mapping[str, str] | None
     mark: str  # what only this run can know: the names of what it leaves behind end in it, and the outcome holds it
-    reads_files: bool  # whether it is given the files that the scene names, and those beside it
+    reads_files: bool  # True if it gets the files that the scene names, and those in its folder
     left_behind: tuple[str, ...]
 
     def leaves(self, what: str) -> Path:
@@ -494,7 +494,7 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
-    detail = visible_line(" ".join(message.split())) or "it does not say which"
+    detail = visible_line(" ".join(message.split())) or "the question is missing"
     return Ending(ENDINGS[kind], place, detail, refusal or None)
 
 

@@ -52,7 +52,7 @@ def scene_text(tree: Tree) -> str:
     Raises
     ------
     HolonomError
-        The tree, or a part of it, is no expression.
+        The tree, or a part of it, is not an expression.
     """
     return converted(tree, _expanded).text
 
@@ -160,7 +160,7 @@ def _fraction(factor: Tree) -> tuple[Tree, Tree]:
     """Return the parts of a factor above and below the stroke."""
     match factor:
         case ["Rational", numerator, denominator]:
-            _digits(numerator), _digits(denominator)  # which are refused where they are no whole numbers
+            _digits(numerator), _digits(denominator)  # which are rejected if they are not whole numbers
             return numerator, denominator
         case ["Divide", numerator, denominator]:
             return numerator, denominator

@@ -15,7 +15,7 @@ from contextlib import suppress
 from threading import Thread
 
 SIGNALLED = 128  # a shell adds this to the number of the signal that ended a command
-POLL_INTERVAL = 0.1  # seconds between two looks for the parent, where the kernel does not tell of its end
+POLL_INTERVAL = 0.1  # seconds between two checks for the parent, if the kernel does not report its end
 ROUNDS = 500  # attempts to end all children, a hundredth of a second each
 PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
 MEMORY_IN_USE = re.compile(r"^(?:VmRSS|VmSwap|VmPTE|HugetlbPages):\s*(\d+) kB$", re.MULTILINE)  # of /proc/PID/status

@@ -54,7 +54,7 @@ class Sandbox(Enum):
     """The use of the sandbox for a scene file: always, if possible, or never.
 
     In it, the file sees the system's programs, the library, copies of the files that its text names below its own
-    folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files beside it. `Limits.allow` adds others. It has no
+    folder, and copies of the ``.mac``, ``.lisp`` and ``.csv`` files in it. `Limits.allow` adds others. It has no
     network, no sockets, no privileges, and limited memory, processes and time.
 
     Examples
@@ -88,7 +88,7 @@ class Limits:
     sandbox : Sandbox
         When the process runs in the sandbox.
     allow : tuple of Path
-        Files that a scene may read in the sandbox besides those beside it.
+        Files that a scene may read in the sandbox besides those in its folder.
 
     Examples
     --------
@@ -296,7 +296,7 @@ def _sandbox(command: Sequence[str], place: Place, filters: Sequence[int]) -> li
 def surroundings(program: Path) -> list[Path]:
     """Return the files that a program outside /usr needs.
 
-    These are the program, the programs beside it, and the libraries of Lisps.
+    These are the program, the programs in its folder, and the libraries of Lisps.
 
     Parameters
     ----------

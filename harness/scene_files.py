@@ -1,6 +1,6 @@
 """Copies of the files that a scene may read in the sandbox.
 
-They are the regular files below the scene's folder that its text names, and those beside it that end in .mac, .lisp
+They are the regular files below the scene's folder that its text names, and those in it that end in .mac, .lisp
 or .csv. Links are not followed, nor is a hidden file or folder entered, and their size is limited.
 """
 

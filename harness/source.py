@@ -94,7 +94,7 @@ def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limi
     ------
     HolonomError
         The file is missing, is refused, asks a question or exceeds a limit; Maxima is missing; what the file describes
-        is no description.
+        is not a description.
     """
     text = read_maxima_text(file)
     if is_description(text):

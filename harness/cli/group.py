@@ -99,7 +99,7 @@ class Commands(click.Group):
             from difflib import get_close_matches
 
             near = get_close_matches(args[0], self.list_commands(ctx))
-            if near and "Did you mean" not in error.message:  # newer versions of Click say it themselves
+            if near and "Did you mean" not in error.message:  # newer versions of Click print it themselves
                 error.message += f" Did you mean {' or '.join(near)}?"
             raise
 
@@ -138,7 +138,7 @@ def _print_versions(ctx: click.Context, parameter: click.Parameter, wanted: bool
 
 def main() -> None:
     """Run the command line and leave with its exit status."""
-    # As `holonom.simulation.evaluation.one_blas_thread` says; NumPy reads this when it is first imported.
+    # For `holonom.simulation.evaluation.one_blas_thread`. NumPy reads this at its first import.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     os.environ.pop("MPLBACKEND", None)  # figures go to files; Matplotlib fails to load where this is nonsense
     _open_what_is_closed()

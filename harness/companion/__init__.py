@@ -1,7 +1,8 @@
 """The textbook companion: static pages whose results come from runs.
 
-A chapter says which runs it needs and what it makes of their results. A template turns that into a page. Numbers,
-equations and verdicts on the pages come from the runs, and the Maxima lines from the source files, at every build.
+A chapter lists the runs that it needs, and computes its content from their results. A template turns that into a page.
+Numbers, equations and verdicts on the pages come from the runs, and the Maxima lines from the source files, at every
+build.
 """
 
 import tomllib

@@ -18,7 +18,7 @@ class Instance:
 
     title: str  # the system, or the scene of it
     equation: Equation
-    verdicts: tuple[EquationVerdict, ...]  # what the cross-check says of it; a third opinion is one more
+    verdicts: tuple[EquationVerdict, ...]  # verdicts of the cross-check, with the third opinion
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Card:
     # of the equation in a record; empty where only the paper has it. Its plain words are under it in a template.
     id: str
     controlled: bool  # whether its system has controls to speak of
-    printed: tuple[PrintedEquation, ...]  # as the paper prints it; empty where there is no print to compare with
+    printed: tuple[PrintedEquation, ...]  # as the paper prints it; empty if the paper does not print it
     instances: tuple[Instance, ...]  # as derived: the first is shown, the others on request
 
 

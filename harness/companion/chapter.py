@@ -19,7 +19,7 @@ class Page:
 
     content: Mapping[str, Any] = field(default_factory=dict)  # the template's variables
     figures: Mapping[str, str] = field(default_factory=dict)  # text of each SVG file, by its name
-    files: Mapping[str, str] = field(default_factory=dict)  # text of other files beside the page, by name
+    files: Mapping[str, str] = field(default_factory=dict)  # text of other files in the folder of the page, by name
 
 
 @dataclass(frozen=True, eq=False)

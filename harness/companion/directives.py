@@ -37,7 +37,7 @@ GRADES = 3
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".kept"  # the folder of results that a later build takes
-FILES = "_runs"  # the folder of what runs made, beside the pages
+FILES = "_runs"  # the folder of results of runs, in the folder of the pages
 
 
 class shown(nodes.General, nodes.Element):
@@ -417,7 +417,7 @@ EVENTS = {
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Tell Sphinx of all of this.
+    """Register all of this with Sphinx.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """The font of the formulas, a subset of STIX Two Math.
 
-STIX Two Math is under the SIL Open Font License 1.1, which its name table says. The subset keeps it. The file comes
+STIX Two Math is under the SIL Open Font License 1.1, as its name table states. The subset keeps it. The file comes
 with the package ziamath, of which nothing else is used.
 """
 

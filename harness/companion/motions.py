@@ -30,7 +30,7 @@ class Motion:
     system: str
     source: str
     title: str
-    film: Film | None  # None where the system does not say how it looks
+    film: Film | None  # None if the system has no drawing
     simulation: Simulation  # coordinates and multipliers
 
     @property

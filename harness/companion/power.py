@@ -21,7 +21,7 @@ class EnergyBalance:
     """Energy balance of a motion: arrays of shape (k,) at its times."""
 
     power: NDArray[np.float64]  # of the reactions, -lambda (df/dt + du/dt df/du)
-    gained: NDArray[np.float64]  # kinetic energy since the start
+    gained: NDArray[np.float64]  # kinetic energy since the initial time
     # by_forces, by_knob: work of the forces and of the reactions since then
     by_forces: NDArray[np.float64]
     by_knob: NDArray[np.float64]

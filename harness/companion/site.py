@@ -20,7 +20,7 @@ from .shelf import Shelf
 
 SOURCES = Path(__file__).parent
 SPHINX = {"en": "en", "zh": "zh_CN"}  # what Sphinx calls a language
-TEXTS = ".texts"  # the folder of what pages about scene files say
+TEXTS = ".texts"  # the folder of the content of pages about scene files
 MARK = ".doctrees"  # a folder of each directory that Sphinx has written into
 
 

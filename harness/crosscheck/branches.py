@@ -29,7 +29,7 @@ class Branch:
     """The argument of a function that branches, or changes quickly, at its zero."""
 
     argument: sp.Expr
-    bounds_domain: bool = False  # whether there is no real value where the argument is negative
+    bounds_domain: bool = False  # True if there is no real value at negative arguments
     is_growing: bool = False  # whether it is that of a function such as exp, which changes but has no sides
 
     @property

@@ -422,7 +422,7 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def initial_accelerations(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:
-    """Compare (13), the accelerations of the bordered system at the start.
+    """Compare (13), the accelerations of the bordered system at the initial time.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ LARGEST_SYSTEM = 12
 """Accelerations and multipliers up to which the search is made."""
 
 LARGEST_CONTROL = 1e3
-"""Coefficients above this size are no law: a multiplier may vanish towards infinity."""
+"""Coefficients above this size are rejected: a multiplier may vanish towards infinity."""
 
 VANISHING = 1e-9
 NEARLY_VANISHING = 1e-4

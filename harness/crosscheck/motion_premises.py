@@ -104,7 +104,7 @@ def _compared(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Ite
 
     The laws are compared at the times of `law_times`.
     """
-    if not motion.ended:  # the start is that of the motion before any release
+    if not motion.ended:  # the initial state is that of the motion before any release
         yield from values_of_start(motion, _start(problem), problem.correction)
     for found, belongs in zip(problem.time_span or (), motion.span or (), strict=True):
         yield ComparedValue("time span", mp.mpf(found), belongs, abs(belongs))

@@ -157,7 +157,8 @@ def _verify(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> Che
     try:
         wrong = differing(compared, digits)
     except IrregularPoint:
-        return CheckResult(Verdict.NOTHING, None, None, "the equations of motion have no power series at the start")
+        reason = "the equations of motion have no power series at the initial time"
+        return CheckResult(Verdict.NOTHING, None, None, reason)
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 

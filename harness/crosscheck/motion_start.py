@@ -19,7 +19,7 @@ from .taylor import Polynomial, Taylor
 
 State = Mapping[str, mp.mpf]
 VALUE, RATE = Taylor(0), Taylor(1)
-START_DIGITS = 45  # to which constraints hold at a start
+START_DIGITS = 45  # to which constraints hold at an initial state
 NEWTON_STEPS, HALVINGS = 60, 20
 CONVERGED = 20  # digits of a root that is only compared by its distance
 NEARER = (
@@ -56,7 +56,8 @@ def values_of_start(
         given = motion.number_of(tree)
         if abs(start[name] - given) > allowed:
             yield ComparedValue(f"initial value of {name}", start[name], given, abs(given))
-    needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])  # forces may have no value at the start
+    # forces may have no value at the initial time
+    needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])
     values = motion.values(RATE, _curve(motion, start), needed)
     sizes, coordinates = motion.tape.sizes(RATE, values, needed), set(motion.system.coordinates)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
@@ -65,7 +66,7 @@ def values_of_start(
             for order, rate in enumerate(("", "rate of ")):
                 value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
                 size += mp.fsum(abs(x) for q in slopes.keys() & coordinates for x in _changes(slopes, start, q, order))
-                yield ComparedValue(f"{rate}{what} {beta} at the start", value, mp.zero, size)
+                yield ComparedValue(f"{rate}{what} {beta} at the initial time", value, mp.zero, size)
 
 
 def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int) -> list[mp.mpf]:

@@ -26,7 +26,7 @@ STATE, SECOND = Taylor(0), Taylor(2)
 INDEXED = re.compile(r"(\w+)\[(\d+)(?:,(\d+))?\]")
 NEWTON_STEPS = 30
 SPARE = 6  # digits to which residuals need not vanish
-NEAR = mp.mpf(1) / 8  # how far from the start a state near it is, in terms of its own size
+NEAR = mp.mpf(1) / 8  # how far from the initial state a state near it is, in terms of its own size
 
 
 class ComparedValue(NamedTuple):

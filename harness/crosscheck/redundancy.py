@@ -25,7 +25,7 @@ from .report import CheckResult, Verdict
 from .system import MechanicalSystem, gradient
 
 STEP = sp.Rational(1, 1000)
-"""Of the random step away from a start, in terms of the random numbers up to two."""
+"""Of the random step away from an initial state, in terms of the random numbers up to two."""
 
 CONFIGURATIONS = 3
 """Configurations on the manifold at which ranks are found."""

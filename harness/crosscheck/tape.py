@@ -473,7 +473,7 @@ def _shares_of_power(
     taylor: Taylor, x: Sequence[Polynomial], value: Polynomial, adjoint: Polynomial
 ) -> list[Polynomial | None]:
     base, exponent = x
-    if len(exponent) == 1 and base[0] <= 0:  # the power is real for this exponent, and for none beside it
+    if len(exponent) == 1 and base[0] <= 0:  # the power is real for this exponent, and not for others near it
         slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
         return [taylor.multiply(adjoint, slope), None]
     share = taylor.multiply(adjoint, value)

@@ -86,7 +86,7 @@ class Taylor:
         )
 
     def divide(self, x: Polynomial, y: Polynomial) -> Polynomial:
-        """Divide by a polynomial that is not zero at the start.
+        """Divide by a polynomial that is not zero at the initial time.
 
         Parameters
         ----------
@@ -101,7 +101,7 @@ class Taylor:
         Raises
         ------
         IrregularPoint
-            The divisor is zero at the start.
+            The divisor is zero at the initial time.
         """
         if not y[0]:
             raise IrregularPoint
@@ -131,7 +131,7 @@ class Taylor:
         Raises
         ------
         IrregularPoint
-            The power is not analytic at the start.
+            The power is not analytic at the initial time.
         """
         if exponent == int(exponent) and 0 <= exponent <= self.order + 2:
             found = (mp.one,)
@@ -192,7 +192,7 @@ class Taylor:
         ----------
         x : Polynomial
         first : mpf
-            Value at the start.
+            Value at the initial time.
 
         Returns
         -------

@@ -79,7 +79,7 @@ class Comparison:
     certificate: Mapping[sp.Symbol, sp.Expr] | None = None
     # symbols with numbers that may be rounded in the last of 50 digits, such as initial values found by Newton's method
     rounded: Mapping[sp.Symbol, sp.Expr] = field(default_factory=dict)
-    # terms of what was described: where one has no real value, as asech(x) at x < 0, its derivatives tell nothing
+    # described terms; where one has no real value, as asech(x) at x < 0, its derivatives are not compared
     domain: tuple[sp.Expr, ...] = ()
 
 
@@ -364,7 +364,8 @@ def verify_rounded(comparison: Comparison) -> CheckResult:
         with mp.workdps(CONFIRMING_DIGITS):
             found, left, right, *changes = steps.at(values)
             if found is None or left is None or right is None or mp.im(found):
-                return CheckResult(Verdict.DISAGREES, DIGITS, 1, f"{pair.quantity} has no real value at the start")
+                detail = f"{pair.quantity} has no real value at the initial time"
+                return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
             explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
             noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * max(abs(left), abs(right))
             if abs(found) > explained + noise:

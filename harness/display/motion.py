@@ -163,7 +163,7 @@ def _quality(report: "Report") -> Iterator[str]:
         yield f"The initial state misses the constraints in its last digits and is corrected, {name} most, by {size}."
     if report.moved is not None:
         name, size = report.moved
-        yield f"The start differs from initial_guess most in {name}, by {size}."
+        yield f"The initial state differs from initial_guess most in {name}, by {size}."
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"

@@ -75,7 +75,7 @@ def show_linearized_motion(console: "Console", along: "LinearizedMotion") -> Non
     for t, *row in zip(along.times, *columns, strict=True):
         table.add_row(f"{t:.10g}", *(f"{number:.6g}" for number in row))
     console.print(table)
-    console.print("Growth: the longest deviation of all that have length one at the start, in the mass metric.")
+    console.print("Growth: the longest deviation of all that have length one at the initial time, in the mass metric.")
     states = len(along.transition[0])
     if (free := along.free) is not None:
         console.print(f"The motion is free. {free.staying} of {states} small deviations stay free to first order.")

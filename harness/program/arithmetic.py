@@ -34,7 +34,7 @@ class Arithmetic(Generic[Value]):
     number: Callable[[Fraction], Value]  # takes a Fraction
     constants: Mapping[Constant, Value]
     power: Callable[[Value, Fraction], Value]  # takes the base's value and a rational exponent
-    # each takes the values of the arguments. ``POWER`` is the one with an exponent that is no number.
+    # each takes the values of the arguments. ``POWER`` has an exponent that is not a number.
     operations: Mapping[Operation, Callable[..., Value]]
 
     def value(self, expression: Expression, names: Mapping[str, Value]) -> Value:

@@ -24,7 +24,7 @@ COMPILERS = ("cc", "gcc", "clang")
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=fast", "-shared", "-fPIC")
 NATIVE = "-march=native"  # for the processor at hand; compilers for some kinds of processors know no such option
 COMPILER_LIMITS = Limits(sandbox=Sandbox.TRUSTED)
-SHOWN = 200  # characters of what the compiler says
+SHOWN = 200  # characters of a compiler's message
 POINTERS = (ctypes.c_void_p, ctypes.c_void_p)
 
 

@@ -33,7 +33,7 @@ class Model:
     controls: tuple[str, ...]
     parameters: tuple[str, ...]
     values: Mapping[str, str]  # what the scene gives to these parameters, as decimal digits; some may be missing
-    # the time, coordinates and velocities at the start, as decimal digits; None where they depend on a parameter
+    # the time, coordinates and velocities at the initial time, as decimal digits; None where they depend on a parameter
     # without value
     start: Mapping[str, str] | None
     # u, ``dot(u)``, ``ddot(u)`` of (t, parameters, what the tables are at t), of the controls that have a law; None
@@ -125,7 +125,7 @@ def read_model(text: str) -> Model:
     Raises
     ------
     HolonomError
-        It is no such document, or one of its programs is no program.
+        It is not such a document, or one of its programs is invalid.
     """
     document = read(Document.MODEL, text)
     system = document["system"]

@@ -19,7 +19,7 @@ from .c_source import FUNCTIONS, Target, statements
 from .model import Model
 from .motion_program import Program
 
-HELPERS = frozenset({"pow", "square", "cube"})  # what C's arithmetic calls beside `FUNCTIONS`
+HELPERS = frozenset({"pow", "square", "cube"})  # what C's arithmetic calls besides `FUNCTIONS`
 
 
 class ModelFunction(NamedTuple):

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 Built = TypeVar("Built")
 NO_JOINTS: Mapping[str, str] = {}
-DOUBLE_DIGITS = 17  # decimal digits that tell any two doubles apart
+DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 
 
 class DependsOn(StrEnum):
@@ -62,12 +62,13 @@ class Origin(StrEnum):
 
 @dataclass(frozen=True)
 class ParametricStart:
-    """The start of a motion as a function of its open parameters."""
+    """The initial state as a function of its open parameters."""
 
     # of the open parameters: each coordinate and velocity, or what the search for it begins with
     program: Program | None
     origins: Mapping[str, Origin]
-    obstruction: str | None  # why the start cannot follow the parameters; there is a program where it can
+    # why the initial state cannot be adapted to the parameters; there is a program where it can
+    obstruction: str | None
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Release:
 
     of: str  # the condition, as Maxima prints it
     multipliers: tuple[str, ...]  # those of the constraints
-    after: "MotionProblem"  # the motion without them, at the start of the whole
+    after: "MotionProblem"  # the motion without them, at the initial time of the whole
 
 
 @dataclass(frozen=True)
@@ -97,8 +98,8 @@ class MotionProblem:
     # coordinates, multipliers: names, n and g of them
     coordinates: tuple[str, ...]
     multipliers: tuple[str, ...]
-    # the time, coordinates and velocities at the start, as decimal digits; the time alone where a parameter without a
-    # value decides about the others
+    # the time, coordinates and velocities at the initial time, as decimal digits; the time alone where a parameter
+    # without a value decides about the others
     start: Mapping[str, str]
     # the given value that missed the constraints in its last digits and was corrected most, and by how much
     correction: Correction | None
@@ -113,7 +114,7 @@ class MotionProblem:
     matrices: Program
     # ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers
     energy: Program
-    drawing: "Drawing | None"  # how the system looks; None where it does not say
+    drawing: "Drawing | None"  # the drawing of the system, or None
     # the last time at which the drives have values, where tables or special functions give them
     law_end: str | None = None
     written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
@@ -145,8 +146,8 @@ class MotionProblem:
     # their values in this motion; some may be missing where none is followed
     values: Mapping[str, Fraction] = field(default_factory=dict)
     parametric_start: ParametricStart | None = None  # None without open parameters
-    given: tuple[str, ...] = ()  # of the state: what the scene gives at the start; the rest is found
-    # sizes beside which quantities are large or small, by name, ``t`` for the time: those that the scene gives
+    given: tuple[str, ...] = ()  # of the state: what the scene gives at the initial time; the rest is found
+    # sizes with which quantities are compared, by name, ``t`` for the time: those that the scene gives
     nominal: Mapping[str, float] = field(default_factory=dict)
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
@@ -395,7 +396,7 @@ def read_problem(text: str, joints: Mapping[str, str] = NO_JOINTS) -> MotionProb
     Raises
     ------
     HolonomError
-        It is no such document, or one of its programs is no program.
+        It is not such a document, or one of its programs is invalid.
     """
     return _problem(read(Document.MOTION_PROBLEM, text), joints)
 

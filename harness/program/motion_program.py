@@ -84,8 +84,8 @@ class Program:
     inputs: tuple[str, ...]
     assignments: tuple[tuple[str, Expression], ...]  # in the order in which they can be computed
     outputs: Mapping[str, Atom]
-    # multipliers that were put to zero, for their constraints follow from the others near the start: accelerations and
-    # constraint forces are unique, multipliers are not
+    # multipliers that were put to zero, for their constraints follow from the others near the initial state:
+    # accelerations and constraint forces are unique, multipliers are not
     redundant: tuple[str, ...] = ()
 
     @staticmethod

@@ -17,7 +17,7 @@ USAGE = (
     "Functions of the time t, the state y, the controls u with their rates and second rates, and the parameters p. The "
     "names of what they take and return are below."
 )
-LAWLESS = " A control has no law, and so there are no functions law and rhs."
+LAWLESS = " A control has no law. Therefore the module has no functions law and rhs."
 RHS = '''\
 def rhs(t, y, p):
     """Return the rates of y under the law."""

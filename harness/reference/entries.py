@@ -33,7 +33,7 @@ class EntryText:
     text: str
     example: str
     errors: tuple[ErrorExample, ...]
-    also: tuple[str, ...] = ()  # entries that the example needs beside it
+    also: tuple[str, ...] = ()  # other entries that the example needs
     system: tuple[str, ...] = ()  # entries of the system that the example needs in place of those of the same names
 
 

@@ -139,7 +139,7 @@ def read_series(text: str) -> MotionSeries:
     Raises
     ------
     HolonomError
-        It is no such document.
+        It is not such a document.
     """
     return structured(MotionSeries, read(Document.MOTION_SERIES, text))
 

@@ -33,7 +33,7 @@ import mpmath
 from ..language import translatable
 
 LAGS = (1, 2, 4)  # singularities that a recurrence knows
-FEWEST = 12  # coefficients below which a series tells nothing about its end
+FEWEST = 12  # fewest coefficients from which a radius is estimated
 MOST_CORRECTIONS = 5
 LAST = 4  # coefficients of which the largest is brought to the order of one
 LATER = (0.5, 0.7)  # shares of the orders after which a fit looks
@@ -49,7 +49,7 @@ FARTHER = 1.2  # a singularity farther away by this factor still shows, as its p
 FINEST = 1e-12  # relative uncertainty that a fit in double precision can have
 COARSE = 0.1  # relative uncertainty that a fit may have
 SMALLEST = 1e-290  # with its reciprocal: sizes between which double precision has all its digits
-DEPENDENT = 1e-13  # of the largest pivot: columns that rounding alone tells apart
+DEPENDENT = 1e-13  # of the largest pivot: columns that differ by rounding only
 
 if TYPE_CHECKING:
     import numpy as np
@@ -62,14 +62,14 @@ if TYPE_CHECKING:
 class Radius:
     """Radius of convergence about the initial time."""
 
-    estimate: float | None  # None where there is none to state; the note says why
+    estimate: float | None  # None if there is no estimate; the note states the reason
     uncertainty: float | None
     singularities: tuple[complex, ...]  # the nearest ones, as t - t0
     note: str  # what was found, in words
-    located: bool = False  # whether the equations of motion are singular there; the coefficients alone tell otherwise
+    located: bool = False  # True if the equations of motion are singular there; False if only the coefficients show it
     coefficients: int = field(default=0, compare=False)  # how many were looked at
-    # strength, beside the singularity found, of one at nine tenths of its distance that would not show; None if nothing
-    # was fitted
+    # largest strength, relative to the singularity found, of an undetected one at nine tenths of its distance; None if
+    # nothing was fitted
     unseen: float | None = field(default=None, compare=False)
 
 

@@ -1,4 +1,4 @@
-"""Find singularities near the start from the equations of motion.
+"""Find singularities near the initial state from the equations of motion.
 
 A motion can be singular if a divisor of its program, or an argument of a root or logarithm, vanishes. These functions
 are continued along the power series into the complex plane of the time, and their zeros are found by Newton's method.
@@ -34,15 +34,15 @@ from .radius import COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
 RADII, ANGLES = 36, 24  # of the points that Newton's method begins from
-REACH = 1e4  # of the unit of the time, where no coefficient tells a radius
+REACH = 1e4  # of the unit of the time, if no coefficient determines a radius
 CORRECTIONS = 40
 CLOSE = 1e-6  # relative distance of two zeros that are one
 CONVERGED = 1e-7
 DIGITS, CIRCLE, POINTS = 60, mpmath.mpf("1e-3"), 32  # of the test on a circle around a zero
 WEAKEST = mpmath.mpf("1e-25")  # of an output on that circle: a negative power that is none
 ROUNDED = mpmath.mpf("1e-45")  # of the largest output on that circle: one that is rounding
-TRUNCATED = 1e-3  # size of the last terms beside the largest, up to which a series stands for the motion
-SHORTER = 2 / 3  # of a series: the part that must tell the same
+TRUNCATED = 1e-3  # largest relative size of the last terms at which a series represents the motion
+SHORTER = 2 / 3  # of a series: the part that must give the same result
 MOST_TESTED = 8
 UNTOLD = (TOO_FEW, UNDECIDED)
 

@@ -91,7 +91,7 @@ def open_names(request: Request, digits: int, also_open: Collection[str] = ()) -
 
 
 def stands(problem: MotionProblem) -> bool:
-    """Return True if the programs of a motion have finite values at the start.
+    """Return True if the programs of a motion have finite values at the initial time.
 
     It is True if no parameter is open.
 
@@ -127,7 +127,7 @@ def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem
     from .initial_state import at_values
 
     if not problem.parameters:
-        return problem  # what is set is no parameter, as the length of a chain is none
+        return problem  # the setting is not a parameter, as the length of a chain
     values = {
         name: Fraction(settings[name]) if name in settings else problem.values[name] for name in problem.parameters
     }
@@ -138,5 +138,5 @@ def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem
             raise
         if values != problem.values:
             return None
-        moved = problem  # Maxima has found the start for these
+        moved = problem  # Maxima has found the initial state for these
     return moved if stands(moved) else None

@@ -210,7 +210,7 @@ def one_blas_thread() -> AbstractContextManager[object]:
     -------
     context manager
     """
-    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # told before it was loaded, as the command line does
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # set before it was loaded, as the command line does
         return nullcontext()
     from threadpoolctl import threadpool_limits
 

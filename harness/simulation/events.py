@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .hybrid_motion import HybridMotion
     from .mode import Mode
 
-ZERO = 1e-12  # of an expression at the start, beside what it is in the first step: no sign
+ZERO = 1e-12  # of an expression at the initial time, relative to its size in the first step: it has no sign
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
 

@@ -1,6 +1,6 @@
 """Kinds of hard case of a motion.
 
-The matrices at the start and at the end show them. The engines report others on the way: redundant constraints,
+The matrices at the initial and the final time show them. The engines report others on the way: redundant constraints,
 singular configurations and vanishing gradients.
 """
 
@@ -26,7 +26,7 @@ UNSQUARED = 1e150  # numbers whose squares leave the range of a double, or soon 
 MANY_STEPS = 10_000
 FREE = 1e-13  # constraint forces, in terms of the others
 STIFF = 1e5  # squares of frequencies, one in terms of another
-AT_REST = 1e-8  # squares of frequencies, in terms of the largest, that differences do not tell from zero
+AT_REST = 1e-8  # squares of frequencies, relative to the largest, that differences do not distinguish from zero
 DIFFERENCE = 1e-5  # of nominal coordinates and velocities: the cube root of a double's rounding error
 DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such a decay may take longer steps
 AT_ONCE = 32  # states whose matrices are held together

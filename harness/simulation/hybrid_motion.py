@@ -424,7 +424,7 @@ class HybridMotion:
             self._reject(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
 
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
-        """Return the signs at the start, each function after its inputs."""
+        """Return the signs at the initial time, each function after its inputs."""
         pattern: dict[str, int | str] = dict.fromkeys(self._signs, 1)
         for name, event in self._time_events.items():
             pattern[name] = event.to if self._precision.ratio(event.t) <= t else -event.to

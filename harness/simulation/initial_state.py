@@ -46,7 +46,7 @@ class InitialStates:
     Raises
     ------
     HolonomError
-        The start cannot follow the parameters.
+        The initial state cannot be adapted to the parameters.
     """
 
     def __init__(self, problem: MotionProblem) -> None:
@@ -220,7 +220,7 @@ class InitialStatesBySign:
     Raises
     ------
     HolonomError
-        The start cannot follow the parameters.
+        The initial state cannot be adapted to the parameters.
     """
 
     def __init__(self, problem: MotionProblem) -> None:
@@ -283,7 +283,7 @@ class InitialStatesBySign:
         return self._of[signs]
 
     def _signs(self, values: Numbers) -> Numbers:
-        """Return the signs at the start, shape (signs, k).
+        """Return the signs at the initial time, shape (signs, k).
 
         Each function follows those that it may contain.
         """
@@ -314,7 +314,7 @@ def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBy
     Raises
     ------
     HolonomError
-        The start cannot follow the parameters.
+        The initial state cannot be adapted to the parameters.
     """
     begun = at_start(problem)
     return InitialStatesBySign(begun) if begun.signs else InitialStates(begun)
@@ -358,8 +358,8 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     Raises
     ------
     HolonomError
-        The start cannot follow the parameters, or not to one that is known to be the only one; there is none for these
-        values.
+        The initial state cannot be adapted to the parameters, or not to one that is known to be the only one; there is
+        none for these values.
     """
     if Origin.CONTINUED in problem.parametric_start.origins.values():
         reason = "no closed form gives it for all values of the parameters; put near values into initial_guess"

@@ -64,7 +64,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
     Raises
     ------
     HolonomError
-        The start cannot follow.
+        The initial state cannot be adapted to the parameters.
     """
     t, state = start_of(problem)
     n = len(problem.coordinates)
@@ -119,7 +119,7 @@ def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray
 
 
 def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64], direction: str) -> None:
-    """Reject a start that is the nearest of many to a guess off the constraints.
+    """Reject an initial state that is the nearest of many to a guess off the constraints.
 
     It moves with the curvature of the constraints, too.
     """

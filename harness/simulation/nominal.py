@@ -176,7 +176,7 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, values
     problem : MotionProblem
         The common problem.
     mass : ndarray, shape (n, n, k)
-        A at the start of each motion.
+        A at the initial time of each motion.
     states : ndarray, shape (2n, k)
         Initial state of each motion.
     values : ndarray, shape (p, k)
@@ -230,7 +230,7 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
     roots : ndarray, shape (n, k)
         Of the masses on the diagonal.
     states : ndarray, shape (2n, k)
-        At the start.
+        At the initial time.
     span : float
         Length of the time span, zero where there is none.
     """

@@ -52,7 +52,7 @@ class Interval(NamedTuple):
     start: Any
     end: Any
     state: Numbers | None  # at the end, where it is wanted
-    impulse: Any  # energy that an impulse at the start brought
+    impulse: Any  # energy that an impulse at the initial time brought
 
 
 class Recording:

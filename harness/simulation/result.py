@@ -50,7 +50,7 @@ class Report:
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`), empty where it did nothing.
     digits : int
-        Decimal digits that tell its numbers apart.
+        Decimal digits that distinguish its numbers.
     correction : (str, str) or None
         The given initial value that was corrected most to fit the constraints, and by how much.
     cases : tuple of Difficulty
@@ -168,7 +168,7 @@ class Simulation(Sampled, Shown):
     scene: str
     title: str
     report: Report
-    drawing: "Drawing | None" = field(default=None, compare=False)  # how the system looks; None if it does not say
+    drawing: "Drawing | None" = field(default=None, compare=False)  # the drawing of the system, or None
 
     def __getitem__(self, name: str) -> NDArray[Any]:
         """Return the samples of a quantity.

@@ -37,10 +37,8 @@ from .recording import SampleBlock
 from .variation import TIME, Variation, seeds_of, size_of
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
-DISTANCE, TOLERATED = (
-    1e-6,
-    1e4,
-)  # relative, and in tolerances: how far the state beside X may be off the motion's
+# largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
+DISTANCE, TOLERATED = 1e-6, 1e4
 CONTINUOUS = 1e-9  # relative change of a state that is none
 
 
@@ -216,7 +214,7 @@ class Sensitivities:
     Raises
     ------
     HolonomError
-        A direction is neither, the start does not follow it, or no motion program solves the equations.
+        A direction is neither, the initial state cannot be adapted to it, or no motion program solves the equations.
     """
 
     def __init__(

@@ -195,7 +195,7 @@ def last_time(problem: MotionProblem, until: Fraction | None, precision: Precisi
     Raises
     ------
     HolonomError
-        There is none, it is not after the start, or a table of the control law ends before it.
+        There is none, it is not after the initial time, or a table of the control law ends before it.
     """
     if until is None and problem.time_span is None:
         raise HolonomError(ErrorKind.NO_END, problem.scene)

@@ -103,7 +103,7 @@ def _refused(*_: Affine | Fraction) -> Affine:
 
 
 class _NoConstants(dict):
-    """pi and e are no fractions."""
+    """Mapping that rejects the constants pi and e, which are not fractions."""
 
     def __missing__(self, constant: Constant) -> Affine:
         raise _Otherwise

@@ -30,7 +30,7 @@ BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
 CORRECTIONS = 4  # of a minimum, by Newton's method
 PARTS, SHORTEST = 128, 1 / 1024  # of the time span: parts that are looked at, at least; parts that are not halved
 SECTIONS = 32  # of an interval with a zero, of which the one that has it is taken
-SURE = 2  # digits that a function loses beside its largest value: what touches zero may be that much below
+SURE = 2  # digits that a function loses relative to its largest value: one that touches zero may be that much below
 LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of the largest where it is near
 
 

@@ -160,7 +160,7 @@ class LinearizedMotion(Shown):
 
     @property
     def growth(self) -> Vector:
-        """The longest deviation of all that have length one at the start, shape (k,)."""
+        """The longest deviation of all that have length one at the initial time, shape (k,)."""
         return np.array([np.linalg.norm(each, 2) for each in self.transition])
 
     def response(self, output: str) -> Matrix:
@@ -277,7 +277,7 @@ class _Node(NamedTuple):
     def is_free(self, nominal: Vector, independent: Sequence[int]) -> bool:
         """Return True if the multipliers vanish.
 
-        They are small beside those that accelerations of nominal sizes need.
+        They are small relative to those that accelerations of nominal sizes need.
         """
         accelerations = np.maximum(np.abs(self.point.accelerations), nominal)
         forces = np.abs(self.here["equation_by_a"]) @ accelerations
@@ -471,7 +471,7 @@ def _floquet(problem: MotionProblem, nodes: _Nodes) -> Floquet | None:
 
 
 def _monodromy(nodes: _Nodes) -> Matrix:
-    """Return Phi(T) in the basis of the start."""
+    """Return Phi(T) in the basis at the initial time."""
     first, last = nodes.linear[0], nodes.linear[-1]
     turned = first.basis.T @ first.mass @ last.basis
     return scipy.linalg.block_diag(turned, turned) @ nodes.transition[-1]

@@ -48,7 +48,7 @@ SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
 LEAST_STIFFNESS = 1e-7  # relative to the largest: what is smaller, or an eigenvalue with a smaller part, is not decided
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
-NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue beyond which first order says nothing
+NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
 TURN = 2 * np.pi
 PROBES = 5  # random states at which whole turns of a coordinate are tried
 
@@ -261,14 +261,14 @@ class _Search:
 
     @cached_property
     def _gradients(self) -> Vector:
-        """Lengths of the constraints' gradients at the start."""
+        """Lengths of the constraints' gradients at the initial time."""
         return np.linalg.norm(self._start["constraint_by_q"] * self._sizes, axis=1)
 
     @cached_property
     def _rank(self) -> int:
         """Return the rank of the constraints' Jacobian.
 
-        If the redundant constraints are not known, it is the rank at the start.
+        If the redundant constraints are not known, it is the rank at the initial time.
         """
         if self._problem.obstruction is None:
             return len(self._independent)

@@ -294,7 +294,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     equations : LinearEquations
         Of the same scene.
     at : Fraction or None
-        The time, or None for the start.
+        The time, or None for the initial time.
 
     Returns
     -------
@@ -315,7 +315,8 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
 def require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
     """Reject a state at which a sign changes, is held, or depends on a reaction.
 
-    A switching function counts as zero beside its changes if time, coordinates and velocities move by nominal sizes.
+    A switching function counts as zero if it is small relative to its changes when time, coordinates and velocities
+    move by nominal sizes.
 
     Parameters
     ----------
@@ -329,7 +330,7 @@ def require_between_switchings(problem: MotionProblem, t: float, state: Vector) 
     Raises
     ------
     HolonomError
-        It is no state between switchings.
+        It is not a state between switchings.
     """
     if not problem.signs:
         return
@@ -463,14 +464,14 @@ def _named(equations: LinearEquations, state: Sequence[str], point: Point) -> di
 
 
 def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector]:
-    """Return the time, None for the start, and the state there.
+    """Return the time, None for the initial time, and the state there.
 
     Parameters
     ----------
     problem : MotionProblem
         The motion.
     at : Fraction or None
-        Time in the scene's unit, or None for the start.
+        Time in the scene's unit, or None for the initial time.
 
     Returns
     -------

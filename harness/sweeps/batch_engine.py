@@ -127,7 +127,7 @@ class BatchEngine:
             compact_mode=problem.motion.operations * elements >= COMPACT_FROM,
         )
         self._state, self._time = self._integrator.state, self._integrator.time
-        self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the start
+        self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
         self._looking = _StepRecorder(self._integrator, self._behind) if along else None
         self._unused = len(problem.multipliers)

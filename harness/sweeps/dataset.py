@@ -66,7 +66,7 @@ class SweepFolder:
     Parameters
     ----------
     document : mapping
-        What the sweep is, as `sweep.json` among the schemas says.
+        Description of the sweep, in the form of the schema `sweep.json`.
 
     Raises
     ------
@@ -192,7 +192,7 @@ def read_document(folder: Path) -> dict[str, Any]:
     Raises
     ------
     HolonomError
-        There is none, or it is no such document.
+        There is none, or it is not such a document.
     """
     try:
         document = json.loads((folder / DOCUMENT).read_text(encoding="utf-8"))

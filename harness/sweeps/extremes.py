@@ -23,7 +23,7 @@ LAST, RESOLVED = 2, 1e-6  # coefficients of a step, and what they are of the lar
 PLACED = 1e-10  # the same where the place of a zero ends the motion
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 ROUNDING = 1e-13  # of the largest value that may be: no sign
-HALVINGS = 60  # of a step; below that numbers are too coarse to tell its parts apart
+HALVINGS = 60  # of a step; below that numbers are too coarse to distinguish its parts
 
 Floats = NDArray[np.float64]
 

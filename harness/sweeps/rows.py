@@ -79,7 +79,7 @@ class RowMaker:
     Raises
     ------
     HolonomError
-        The start does not follow the parameters, the motion has no end, or an output is unknown.
+        The initial state cannot be adapted to the parameters, the motion has no end, or an output is unknown.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -151,7 +151,7 @@ class RowMaker:
 
     def _fill(self, rows: "_Rows") -> None:
         starts = self._starts(rows.values)
-        rows.mark(~starts.found, Status.NO_START, "no state was found that satisfies the constraints at the start")
+        rows.mark(~starts.found, Status.NO_START, "no state was found that satisfies the initial constraints")
         there = np.flatnonzero(starts.found)
         if len(there) and any(output.kind is Kind.RADIUS for output in self.plan.outputs):
             name = next(output.text for output in self.plan.outputs if output.kind is Kind.RADIUS)
@@ -269,7 +269,7 @@ class RowMaker:
     def _seen(self, steps: list[Steps]) -> Floats:
         """Return the numbers made of quantities along motions, shape (numbers, elements).
 
-        The last says whether they are free.
+        The last is 1 if they are free.
         """
         looks, fields = steps[: len(self._looks)], steps[len(self._looks) :]
         made = [self._made(output.kind, along) for output, along in zip(self._looks, looks, strict=True)]

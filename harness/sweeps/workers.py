@@ -159,7 +159,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
     import distributed  # noqa: F401
 
     for name in ("distributed", *logging.root.manager.loggerDict):
-        if name.startswith(("distributed", "tornado")):  # what matters of what they say comes as exceptions
+        if name.startswith(("distributed", "tornado")):  # their errors arrive as exceptions
             logging.getLogger(name).setLevel(logging.CRITICAL)
     settings = {
         "distributed.scheduler.allowed-failures": ATTEMPTS,

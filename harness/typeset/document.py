@@ -14,7 +14,7 @@ from .equations import blocks
 from .latex import latex
 from .quantities import spelled_out, symbol_box
 
-WIDTH = 70  # digits of the article's typeface beside the number of an equation
+WIDTH = 70  # width left of an equation's number, in digits of the article's typeface
 PREAMBLE = r"""% Written by Holonom
 \documentclass[11pt]{article}
 \usepackage[utf8]{inputenc}

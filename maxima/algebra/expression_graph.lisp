@@ -467,7 +467,7 @@
 (defun $graph_zerop (term) (zero-term-p (expression-term term)))
 (defun $graph_numberp (term) (number-term-p (expression-term term)))
 
-;; A sum's own coefficients have no common factor, so that those of the terms tell.
+;; A sum's own coefficients have no common factor, so that those of the terms decide.
 (defun $graph_common_number (terms)
   "The number, as a term, that all of the terms have before them up to the sign; one where they differ."
   (let ((numbers (mapcar #'(lambda (term) (abs (term-coefficient (expression-term term)))) (cdr terms))))

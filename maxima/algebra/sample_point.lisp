@@ -26,7 +26,7 @@
 (defvar *small-correction* (expt 10 -12) "Of the largest coordinate: a correction that needs no line search.")
 
 (defvar *contraction* 1/16
-  "Of a correction: what the constraints may miss of being linear along it, where the start is next to its root.")
+  "Of a correction: what the constraints may miss of being linear along it, where the initial state is near its root.")
 
 (defvar *starts-on-a-line* '(1/16 -1/16 1/8 -1/8 3/16 -3/16 1/4 -1/4 5/16 -5/16 3/8 -3/8 7/16 -7/16 1/2 -1/2
                              9/16 -9/16 5/8 -5/8 11/16 -11/16 3/4 -3/4 13/16 -13/16 7/8 -7/8 15/16 -15/16 1 -1)
@@ -173,7 +173,7 @@
                                    (aref rows i) (car pivot) k holders))))))
 
 (defun row-less-multiple (row multiple other column k holders)
-  "row - multiple*other, without the column that vanishes. New entries are told to the holders."
+  "row - multiple*other, without the column that vanishes. New entries are passed to the holders."
   (let ((result nil))
     (do () ((and (null row) (null other)) (nreverse result))
       (cond ((or (null other) (and row (< (caar row) (caar other))))
@@ -516,7 +516,7 @@ vanish; false where Newton's method does not get there."
         (/ (round (* number unit)) unit))))
 
 (defun simple-fraction (number)
-  "The first convergent of the continued fraction that is as near as the kept digits tell."
+  "The first convergent of the continued fraction that is as near as the kept digits show."
   (let ((rest (abs number)) (p 1) (p-before 0) (q 0) (q-before 1) (size (abs number)))
     (do () ((> q (expt 10 (floor *kept-digits* 4))))
       (let ((whole (floor rest)))

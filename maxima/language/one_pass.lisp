@@ -125,7 +125,7 @@
 
 ;;; ---- of many, most are zero --------------------------------------------------------------
 ;;;
-;;; What a coordinate says of another is nearly always nothing. Derivatives are taken by the names that a
+;;; The derivative of one coordinate by another is nearly always zero. Derivatives are taken by the names that a
 ;;; term contains, and products and images are formed of what is not zero.
 
 (defun $gradient (e names)

@@ -1,6 +1,6 @@
 ;;; diff(x, t) in a scene's text: what Maxima takes for a partial derivative
 ;;;
-;;; Maxima takes every symbol for a constant that  depends  does not say otherwise of: -c*diff(x, t) is 0, and the
+;;; Maxima takes every symbol for a constant unless  depends  declares otherwise: -c*diff(x, t) is 0, and the
 ;;; damping is gone. Here  diff  notes what scene text, all that runs outside of the library's functions, differentiates
 ;;; by t, so that holonomic_system can refuse it; the result is Maxima's own.
 ;;;
@@ -24,7 +24,7 @@
       (if users (setf (get '%signum 'grad) users) (remprop '%signum 'grad)))))
 
 (defun constant-by-default-p (e)
-  "Whether a symbol of e is taken for a constant because  depends  says nothing about it."
+  "Return true if a symbol of e counts as a constant because  depends  does not declare it."
   (some #'(lambda (symbol) (not (or (eq symbol '$t) (mget symbol 'depends)))) (cdr ($listofvars e))))
 
 (defun scene-text-p ()

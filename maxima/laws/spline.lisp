@@ -122,7 +122,7 @@
   (and ($listp rows) (all-of-p #'(lambda (row) (and ($listp row) (= (length row) 3))) (cdr rows))))
 
 (defun $point_without_numbers (rows)
-  "The first one whose time is no fraction, or whose height is no constant; false where there is none."
+  "Return the first point whose time is not a fraction or whose height is not a constant, or false."
   (car (member-if-not #'(lambda (row) (and (rationalp (rational-of (second row)))
                                            (or (rationalp (rational-of (third row))) ($constantp (third row)))))
                       (cdr rows))))

@@ -1,7 +1,7 @@
 ;;; A table in a CSV file: two numbers a line, t and u
 ;;;
 ;;; Empty lines and those that begin with # are skipped, and so is a first line without any number. A number, which
-;;; may stand in quotes, is read as the fraction that its decimal digits say.
+;;; may stand in quotes, is read as the fraction with its decimal digits.
 
 (in-package :maxima)
 

@@ -1,4 +1,4 @@
-;;; L D L^T and the two triangular solves, entry by entry     (elimination.mac says what is computed)
+;;; L D L^T and the two triangular solves, entry by entry     (elimination.mac defines what is computed)
 ;;;
 ;;; The matrix is a table: the place of an entry of its upper triangle, counted by columns -> the terms still to be
 ;;; summed, later what a step leaves there. The right-hand side is a vector, from 1 on, of the same. A step is

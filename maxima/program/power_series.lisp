@@ -150,7 +150,7 @@
 (defun look-up-rate (symbol rates) (setf (gethash symbol rates) (series-of-term (gethash symbol rates))))
 
 (defun new-series (rule)
-  "A series that at each order does what rule, a function of the series and the order, says."
+  "Return a series whose coefficients are computed by rule, a function of the series and the order."
   (let ((x (make-power-series)))
     (push (cons x rule) (series-machine-steps *machine*))
     x))
@@ -268,7 +268,7 @@
 (defun maxima-value (number) (if *binary-digits* ($bfloat (maxima-number number)) (maxima-number number)))
 
 ;; exp(-10^7) as a fraction has millions of digits, and its sum with 1 takes minutes.
-(defvar *smallest-power* -40000 "Power of two below which rounded values at the start are zero.")
+(defvar *smallest-power* -40000 "Power of two below which rounded values at the initial time are zero.")
 
 (defun number-at-start (e assignment)
   "The value of a Maxima expression as a Lisp rational."
@@ -336,7 +336,7 @@
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
 ;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
 ;;; measured by the largest coefficients of orders around, and smaller by the digits added at least. Coefficients of
-;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits tell.
+;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits decide.
 
 (defvar *few-digits* 5)
 

@@ -49,7 +49,7 @@ class Sweep:
     Attributes
     ----------
     variable : str
-        What makes it harder, as an axis says it.
+        Label of the parameter that makes it harder, as on an axis.
     digits : mapping of str to tuple of float
         By method, one number for each value.
     """

@@ -65,7 +65,7 @@ def falling(t: mpf) -> list[mpf]:
     Parameters
     ----------
     t : mpf
-        Time since the start, in seconds.
+        Time since the initial time, in seconds.
 
     Returns
     -------

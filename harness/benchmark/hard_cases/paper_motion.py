@@ -24,7 +24,7 @@ def coordinates(t: mpf) -> list[mpf]:
     Parameters
     ----------
     t : mpf
-        Time since the start.
+        Time since the initial time.
 
     Returns
     -------
@@ -41,7 +41,7 @@ def velocities(t: mpf) -> list[mpf]:
     Parameters
     ----------
     t : mpf
-        Time since the start.
+        Time since the initial time.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def forces(t: mpf) -> list[mpf]:
     Parameters
     ----------
     t : mpf
-        Time since the start.
+        Time since the initial time.
 
     Returns
     -------
@@ -75,7 +75,7 @@ def constraint_force(multiplier: float, t: mpf) -> mpf:
     multiplier : float
         The multiplier lambda.
     t : mpf
-        Time since the start, which determines u.
+        Time since the initial time, which determines u.
 
     Returns
     -------
@@ -119,7 +119,7 @@ def _vanishing(solve: SolveAt, t: mpf) -> float:
 
 
 def _zero(multiplier: float, t: float) -> float:
-    """Digits to which the constraint force vanishes among the forces of the start."""
+    """Digits to which the constraint force vanishes among the forces at the initial time."""
     return digits_of_error(constraint_force(multiplier, mpf(t)), max(map(abs, forces(mpf(0)))))
 
 

@@ -79,7 +79,7 @@ def turning(frequency: mpf, t: mpf) -> tuple[mpf, mpf]:
     frequency : mpf
         Angular frequency of small oscillations about the lowest place, in rad/s.
     t : mpf
-        Time since the start, in seconds.
+        Time since the initial time, in seconds.
 
     Returns
     -------

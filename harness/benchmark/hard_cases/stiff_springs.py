@@ -17,7 +17,7 @@ TIMES = {Extent.SHORT: 1, Extent.FULL: 10}  # seconds; 195 oscillations of the s
 
 with certified:
     SOFT, STIFF, LENGTH, SPEED, REST = mpf(1), mpf(10) ** 6, mpf(1), mpf(1) / 10, mpf(1)  # k, K, l0, v, r; m = 1
-    P, S = mpf(1) / 10, mpf(101) / 1000  # at the start, at rest
+    P, S = mpf(1) / 10, mpf(101) / 1000  # at the initial time, at rest
     ENERGY = (SOFT * P**2 + STIFF * (S - P) ** 2) / 2
 
 
@@ -30,7 +30,7 @@ def coordinates(t: mpf) -> list[mpf]:
     Parameters
     ----------
     t : mpf
-        Time since the start, in seconds.
+        Time since the initial time, in seconds.
 
     Returns
     -------

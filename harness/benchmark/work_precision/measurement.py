@@ -84,7 +84,8 @@ class Group(StrEnum):
     SOLVE = "solve"
 
 
-WHOLE_MOTION = (Group.TAYLOR, Group.RUNGE_KUTTA, Group.SOLVER)  # from the start to the end, and nothing else differs
+# from the initial state to the end, and nothing else differs
+WHOLE_MOTION = (Group.TAYLOR, Group.RUNGE_KUTTA, Group.SOLVER)
 
 
 @dataclass(frozen=True)

@@ -88,7 +88,7 @@ def explanation(model: Model) -> str:
         f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
     ]
     given = " and ".join(filter(None, inputs)) or "none"
-    return f"{title_of(model.motion)}. Inputs beside t, q and v: {given}. All else has the scene's values."
+    return f"{title_of(model.motion)}. Inputs besides t, q and v: {given}. The others have the scene's values."
 
 
 def comment_text_of(paragraph: str) -> str:

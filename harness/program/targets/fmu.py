@@ -44,7 +44,7 @@ def write_model(model: Model, name: str) -> bytes:
     Raises
     ------
     HolonomError
-        There is no C compiler, the name is no identifier, or something has no value to start from.
+        There is no C compiler, the name is not an identifier, or a quantity has no initial value.
     """
     _require_start(model)
     library = c.write_model(model, name)

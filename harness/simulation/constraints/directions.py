@@ -1,7 +1,7 @@
 """Directions of constraints in the mass metric: their rank and near dependence.
 
 With A = L L^T and every row of J scaled to length one, W = L^-1 J^T D holds the constraints' directions as columns.
-Its singular values tell how independent they are (Golub & Van Loan, Matrix Computations, section 5.3).
+Its singular values measure their independence (Golub & Van Loan, Matrix Computations, section 5.3).
 
 Where A is not positive definite, A + rho J^T J takes its place: under J a = -c, with h - rho J^T c for h, it has the
 same accelerations and the same multipliers.

@@ -9,7 +9,7 @@ A's diagonal, D the scale that brings the rows of J S to length one, and a small
     | alpha S A S  (D J S)^T |   |     S^-1 a         |     | alpha S h |
     | D J S            0     |   | -alpha D^-1 lambda |  =  |   - D c   |
 
-is symmetric, and its condition number grows no faster than that of D J S while alpha is small beside the latter's
+is symmetric, and its condition number grows no faster than that of D J S while alpha is small relative to the latter's
 singular values (Arioli, Duff & de Rijk, On the augmented system approach to sparse least-squares problems, 1989).
 SuperLU factors it with partial pivoting. Its cost grows like the fill, linearly along a chain of bodies. A step or two
 of refinement reduce the error to a rounding in each nonzero entry (Skeel, Iterative refinement implies numerical
@@ -33,7 +33,7 @@ from .directions import EPSILON, or_one, rank_of, weighted_constraints
 
 ALPHA = 2.0**-10
 REFINEMENTS = 5
-CONTRACTION = 0.5  # a change at least that large beside the last one leads nowhere
+CONTRACTION = 0.5  # smallest ratio of a change to the last one at which the iteration does not converge
 ROUNDING = 4 * EPSILON  # relative change of the accelerations that is none
 
 

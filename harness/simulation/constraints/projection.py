@@ -15,7 +15,7 @@ from .factorization import FactoredConstraints, factored_constraints
 
 ROUNDING = 8 * EPSILON  # relative size of a correction that is none
 CONSISTENT = 1e-9  # distance from a constraint, relative to the coordinates, that cannot be rounding
-CONTRACTION = 0.5  # a small correction at least that large beside the last one is rounding, too
+CONTRACTION = 0.5  # smallest ratio of a small correction to the last one at which it is rounding, too
 ITERATIONS = 25
 
 

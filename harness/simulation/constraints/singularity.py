@@ -3,11 +3,11 @@
 In the mass metric and scaled to length one, the directions of the constraints have singular values. Without those of
 redundant constraints, the least one vanishes in a singular configuration, in proportion to the distance. A constraint
 whose gradient itself vanishes, such as a length that shrinks to zero, is not detected by it. Its gradient is compared
-with the one at the start.
+with the one at the initial time.
 
 A motion that meets such a time exactly, a bob drawn straight up into its hinge, is as smooth there as anywhere else: no
 step shrinks, and only the reaction is infinite. So these times are found beforehand: a control changes its sign, and
-there is a point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the start.
+there is a point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the initial state.
 """
 
 from collections.abc import Iterator
@@ -27,8 +27,8 @@ from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constr
 from .projection import InconsistentConstraints, settle
 
 PROBE = 1e-4  # of their nominal sizes, the way that the coordinates go to see which constraints stay dependent
-NEXT_TO = 3e-4  # of nominal sizes, the way to a singular configuration that is no way
-AT_REST = 1e-8  # nominal speed below which the time, not the way, tells how near a singular configuration is
+NEXT_TO = 3e-4  # distance to a singular configuration that counts as zero, relative to nominal sizes
+AT_REST = 1e-8  # nominal speed below which time, not distance, measures how near a singular configuration is
 GROWN = 3.0  # times, on this way, that a singular value grows from next to a singular configuration
 REACH = 2.0  # steps ahead within which a singular configuration counts as near
 SMALL = 0.5  # least singular value above which none is near, however fast it falls
@@ -36,9 +36,9 @@ POINTS = 2049  # of a time span at which the controls are looked at
 HALVINGS = 60  # of an interval between two of them: down to rounding
 ITERATIONS = 5
 SHORTLY = 1e-6  # of the way to such a time
-VANISHED = 1e-3  # of its size at the start: what is left of a gradient that runs to zero
+VANISHED = 1e-3  # of its size at the initial time: what is left of a gradient that runs to zero
 DIFFERENCE = 1e-6  # of the nominal sizes of coordinates
-NEGLIGIBLE = 1e-6  # of a gradient, or of a residual beside what the gradient makes of the way to the point
+NEGLIGIBLE = 1e-6  # of a gradient, or of a residual relative to the gradient times the distance to the point
 
 
 def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, float]:

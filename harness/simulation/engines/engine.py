@@ -55,7 +55,7 @@ class Step(NamedTuple):
     end: Any
     # takes times of the step, shape (k,), to states, shape (2n, k): coordinates, then velocities
     states: Callable[[NDArray[Any]], NDArray[Any]]
-    # mode, impulse: the motion's mode, and the energy that an impulse at the start brought; None from an engine
+    # mode, impulse: the motion's mode, and the energy that an impulse at the initial time brought; None from an engine
     mode: "Mode | None" = None
     impulse: Any = None
 

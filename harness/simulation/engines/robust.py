@@ -346,7 +346,7 @@ class RobustEngine:
         return least_of(singular_values_at(self.matrices, t, state), self.rank)
 
     def _require_rank(self, t: float | Vector, state: Vector) -> None:
-        """No constraint that depended on the others at the start may come to count."""
+        """No constraint that depended on the others at the initial time may come to count."""
         for at in zip(np.atleast_1d(t), np.atleast_2d(state), strict=True):
             if rank_of(singular_values_at(self.matrices, *at), UNTRUSTED) > self.rank:
                 raise HolonomError(

@@ -34,10 +34,10 @@ from .engine import Step, Task
 from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
-# seconds a step takes for an operation, in all its stages, and beside them
+# seconds a step takes for an operation, in all its stages, and for everything else
 STAGES, STEP = 7.5e-9, 2e-7
 STRIDE = 0.89  # steps for one of the Taylor engine
-DENSE, DENSER = 8, 1.25  # rows of the dense output; what it costs, three stages beside twelve
+DENSE, DENSER = 8, 1.25  # rows of the dense output; its cost, three stages relative to twelve
 ORDER = 8  # what its steps shrink with
 COMPILER = 0.15, 5e-4  # seconds that the C compiler takes, and for an operation
 
@@ -335,7 +335,7 @@ def states_of(start: float, end: float, rows: Floats, times: Floats) -> Floats:
     start, end : float
         Times of the step.
     rows : ndarray, shape (8, 2n)
-        State at the start, and coefficients of products of x and 1 - x in turn.
+        State at the initial time, and coefficients of products of x and 1 - x in turn.
     times : ndarray, shape (k,)
         Times of the step.
 

@@ -26,7 +26,7 @@ TO_COEFFICIENTS = (np.arange(NODES)[:, None] + 0.5) * WEIGHTS * legendre.legvand
 TAIL = 2  # coefficients whose size is taken for the error of the polynomial
 ITERATIONS = 50
 ROUNDING = 4 * EPSILON  # relative change of the coordinates that is none
-CONTRACTION = 0.5  # a change at least that large beside the last one is rounding where it is small, else divergence
+CONTRACTION = 0.5  # smallest ratio of a change to the last one that is rounding if it is small, else divergence
 SMALL = 1e-9
 WARMING_UP = 3  # iterations that need not contract
 
@@ -99,7 +99,7 @@ def arc_over(
     start, end : float
         The singular configuration lies well between them.
     state : ndarray, shape (2n,)
-        At the start.
+        At the initial time.
     guess : ndarray, shape (NODES, n)
         Accelerations at Gauss's nodes to begin with.
     sizes : ndarray, shape (n,)
