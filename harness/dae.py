@@ -111,7 +111,7 @@ class Dae:
         y : array_like, shape (N,)
             Components in the order of `names`.
         yp : array_like, shape (N,)
-            Their rates.
+            Their time derivatives.
 
         Returns
         -------
@@ -134,7 +134,7 @@ class Dae:
         y : array_like, shape (N,)
             Components in the order of `names`.
         yp : array_like, shape (N,)
-            Their rates.
+            Their time derivatives.
         factor : float
             Factor of dF/dy', per unit of time.
 

@@ -86,7 +86,7 @@ class ControlCondition:
 
     @cached_property
     def expression(self) -> Expr:
-        """Expression in the time, the controls and their rates."""
+        """Expression in the time, the controls and their time derivatives."""
         return to_sympy(self.expression_tree)
 
     @cached_property

@@ -137,7 +137,7 @@ def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Progra
     Returns
     -------
     list of Program
-        Programs whose outputs are controls, their rates and prescribed reactions.
+        Programs whose outputs are controls, their time derivatives and prescribed reactions.
     """
     laws = [
         f"{dots}{name}{end}" for name in motion.law.places for dots, end in (("", ""), ("dot(", ")"), ("ddot(", ")"))

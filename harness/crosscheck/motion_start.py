@@ -147,7 +147,7 @@ class _Search:
             guess = {**self._start, **self._guess}
             metric = self._metric(guess)
             found, is_open = self._root(guess, metric)
-            if is_open and self._motion.scene.servo_trees:  # rates of the outputs are conditions as well
+            if is_open and self._motion.scene.servo_trees:  # time derivatives of the outputs are conditions as well
                 return ""
             ways = [[state[name] - at for name, at in self._guess.items()] for state in (found, self._start)]
             own, other = (_length(metric, way) for way in ways)

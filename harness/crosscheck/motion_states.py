@@ -360,7 +360,7 @@ def values_of_matrices(
             f"rate of constraint {beta + 1}", computed[f"residual_rate[{beta + 1}]"][0], f[1], abs(f[1])
         )
         size = mp.fsum(map(abs, terms)) + abs(right)
-        yield ComparedValue(f"second rate of constraint {beta + 1}", mp.fsum(terms) - right, 2 * f[2], size)
+        yield ComparedValue(f"second time derivative of constraint {beta + 1}", mp.fsum(terms) - right, 2 * f[2], size)
 
 
 def values_of_solve(
@@ -489,4 +489,4 @@ def values_by_substitution(
     for beta, place in enumerate([*motion.constraints, *motion.outputs]):
         if place in holding:
             f = (*values[place], mp.zero, mp.zero)
-            yield ComparedValue(f"second rate of constraint {beta + 1}", 2 * f[2], mp.zero, mp.zero)
+            yield ComparedValue(f"second time derivative of constraint {beta + 1}", 2 * f[2], mp.zero, mp.zero)

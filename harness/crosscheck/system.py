@@ -1,7 +1,7 @@
 """The system as described: T, V, Q and f of the chosen effects.
 
-The independent evaluation uses nothing else of a record. Every symbol has a rate, the symbol that is its derivative
-along the motion:
+The independent evaluation uses nothing else of a record. Every symbol has a time derivative, the symbol that is its
+derivative along the motion:
 
     q -> dot(q) -> ddot(q) -> dddot(q),   u -> dot(u) -> ddot(u) -> dddot(u),   lambda -> dot(lambda).
 """
@@ -80,12 +80,12 @@ class MechanicalSystem:
 
     @cached_property
     def multiplier_derivatives(self) -> tuple[sp.Symbol, ...]:
-        """The g rates dot(lambda)."""
+        """The g time derivatives dot(lambda)."""
         return tuple(dotted("dot", multiplier) for multiplier in self.multipliers)
 
     @cached_property
     def rates(self) -> Mapping[sp.Symbol, sp.Expr]:
-        """The rate of each symbol that changes along a motion."""
+        """The time derivative of each symbol that changes along a motion."""
         return {
             self.time: sp.Integer(1),
             **dict(zip(self.multipliers, self.multiplier_derivatives, strict=True)),
@@ -175,7 +175,7 @@ def gradient(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> list[sp.Expr]
 
 
 def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
-    """List a coordinate or control and its first three rates.
+    """List a coordinate or control and its first three time derivatives.
 
     Parameters
     ----------

@@ -94,8 +94,8 @@ class MotionProgram:
         Parameters
         ----------
         module : str or None
-            ``"numpy"``, ``"jax"`` or ``"casadi"``: functions of arrays: the motion, the control law, the rates of
-            the state. Without it, a function of numbers with the scene's parameters.
+            ``"numpy"``, ``"jax"`` or ``"casadi"``: functions of arrays: the motion, the control law, the time
+            derivatives of the state. Without it, a function of numbers with the scene's parameters.
         parameters : sequence of str
             With a module: parameters that stay open although the scene gives them values.
         name : str or None

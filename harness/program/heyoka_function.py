@@ -117,8 +117,8 @@ def dynamics(
     program : Program
         Its outputs hold the accelerations.
     given : mapping of str to expression
-        Controls, their rates and accelerations as functions of `heyoka.time`, and parameters: all inputs other than
-        time, coordinates and velocities.
+        Controls, their time derivatives and accelerations as functions of `heyoka.time`, and parameters: all inputs
+        other than time, coordinates and velocities.
     number : callable
         As for `heyoka_expressions`.
 

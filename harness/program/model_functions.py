@@ -1,10 +1,10 @@
 """A scene's model as functions of time t, state y, controls u and parameters p.
 
-The controls u include their rates. ``law(t, p)`` returns u, and ``rhs(t, y, p)`` the derivative of y under it. Both are
-missing if a control has no law. The other functions take (t, y, u, p):
+The controls u include their time derivatives. ``law(t, p)`` returns u, and ``rhs(t, y, p)`` the derivative of y under
+it. Both are missing if a control has no law. The other functions take (t, y, u, p):
 
 - ``motion`` returns accelerations and multipliers,
-- ``constraints`` returns residuals, their rates and the Jacobian's entries,
+- ``constraints`` returns residuals, their time derivatives and the Jacobian's entries,
 - ``projection`` returns corrections of y,
 - ``servo`` returns the controls of servo-constraints,
 - ``observe`` returns the scene's own outputs.

@@ -112,7 +112,7 @@ class MotionProblem:
     # ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``, ``residual[beta]``,
     # ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c
     matrices: Program
-    # ``energy``, the energy function, and ``power``, its rate along the motion; they need the multipliers
+    # ``energy``, the energy function, and ``power``, its time derivative along the motion; they need the multipliers
     energy: Program
     drawing: "Drawing | None"  # the drawing of the system, or None
     # the last time at which the drives have values, where tables or special functions give them
@@ -122,12 +122,13 @@ class MotionProblem:
     controls: Program | None = None
     # what the scene observes under names of its own; ``ddot(q)`` are inputs, behind the multipliers. None without any
     outputs: Program | None = None
-    # ``servo_matrix[j,i]``: what the i-th control that servo-constraints find adds to the second rate of condition j
+    # ``servo_matrix[j,i]``: coefficient of the i-th control that servo-constraints find, in the second time derivative
+    # of condition j
     servo_matrix: Program | None = None
     # how many of the constraints, the last ones, servo-constraints keep, so that their multipliers are zero
     servo: int = 0
     reacting: tuple[str, ...] = ()  # multipliers that forces contain
-    # of each output that servo-constraints prescribe: which of its rates the controls are in
+    # of each output that servo-constraints prescribe: which of its time derivatives the controls are in
     relative_degrees: tuple[int, ...] = ()
     # the initial value that differs most from the scene's guess, and by how much; None without a guess
     moved: Correction | None = None

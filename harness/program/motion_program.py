@@ -3,7 +3,7 @@
 One JSON document from Maxima:
 
     inputs        names, in the order of every function made of the program: t, coordinates, velocities, controls,
-                  control rates, control accelerations, parameters
+                  control velocities, control accelerations, parameters
     assignments   [name, expression], each of the inputs and the names before it
     outputs       name -> a name or a number
 

@@ -14,13 +14,13 @@ CUBE = """\
 def cube(x):
     return x*x*x"""
 USAGE = (
-    "Functions of the time t, the state y, the controls u with their rates and second rates, and the parameters p. The "
-    "names of what they take and return are below."
+    "Functions of the time t, the state y, the controls u with their first and second time derivatives, and the "
+    "parameters p. The names of arguments and results are below."
 )
 LAWLESS = " A control has no law. Therefore the module has no functions law and rhs."
 RHS = '''\
 def rhs(t, y, p):
-    """Return the rates of y under the law."""
+    """Return the time derivatives of y under the law."""
     points, rows = _points(t, y, p), motion(t, y, {u}, p)
     return _stacked([*points[{n} + 1 : 2*{n} + 1], *(rows[place] for place in range({n}))], points)'''
 

@@ -354,8 +354,8 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
     problem : MotionProblem
         The motion.
     quantity : str
-        ``switch``, the function whose sign it is. ``switch_rate``, its rate, or ``drive``, the first of its rates that
-        contains accelerations, with the sign's value from the pattern.
+        ``switch``, the function whose sign it is. ``switch_rate``, its time derivative, or ``drive``, its first time
+        derivative that contains accelerations, with the sign's value from the pattern.
     name : str
         One of the signs.
     pattern : Pattern

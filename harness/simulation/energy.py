@@ -1,6 +1,6 @@
 """The balance of energy.
 
-The energy function changes at the rate that `MotionProblem.energy` calls power. Energy that was gained beyond the
+`MotionProblem.energy` calls the time derivative of the energy function power. Energy that was gained beyond the
 integral of the power is an error of the motion (Goldstein, Poole & Safko, section 2.7).
 """
 

@@ -7,9 +7,9 @@ switching function changes its sign, the step is cut, and the equations on both 
 - if both lead back to it, the motion slides on it, as dry friction sticks, until one of them does not
   (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4).
 - if a joint is released, its constraints end: the state stays the same, and the accelerations jump;
-- if the rate of a control law jumps, the velocities do: the momenta dL/d dot(q) change along the constraints' gradients
-  alone, by the impulse that makes the new velocities satisfy the constraints (Pars, A Treatise on Analytical Dynamics,
-  chapter 14).
+- if the time derivative of a control law is discontinuous, so are the velocities: the momenta dL/d dot(q) change along
+  the constraints' gradients only, by the impulse that makes the new velocities satisfy the constraints (Pars, A
+  Treatise on Analytical Dynamics, chapter 14).
 
 Undetermined continuations are rejected: a control law that jumps in a constraint, an energy that jumps as a function of
 the state, an impulse of a surface without a law of impact.
@@ -56,7 +56,7 @@ from .residuals import residuals
 from .time_events import time_events
 from .zeros import Crossing
 
-ZERO = 1e-12  # of what a switching function or its rate is at nominal sizes: no sign
+ZERO = 1e-12  # of what a switching function or its time derivative is at nominal sizes: no sign
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
 LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: times at which a function of the time is looked at
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end

@@ -1,6 +1,6 @@
 """Matrices of a motion at a state, for the solves with pivots.
 
-They are those of A a - J^T lambda = h, J a = -c, with the constraints f and their rate df/dt.
+They are those of A a - J^T lambda = h, J a = -c, with the constraints f and their time derivative df/dt.
 """
 
 import math

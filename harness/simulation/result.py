@@ -72,7 +72,7 @@ class Report:
     choice : Choice or None
         Why the engine that began was taken, or None where one was requested, or is the only one.
     relative_degrees : tuple of int
-        Of each output that servo-constraints prescribe: which of its rates the controls are in.
+        Of each output that servo-constraints prescribe: which of its time derivatives the controls are in.
     sensitivities : mapping of str to float
         Derivatives at the end, ``d(t, m)`` among them where an event ends the motion: then the others are those of the
         values at the event, not at a fixed time.

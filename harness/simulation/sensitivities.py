@@ -9,7 +9,7 @@ sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 2
 
     X+ = X- + (F- - F+) dt/dp,    dt/dp = -(s_x X- + s_p)/(s_t + s_x F-).
 
-X keeps the constraints' derivative, J dq/dp = -f_p and its rate, from which rounding lets it go.
+X keeps the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
 """
 
 from collections.abc import Mapping, Sequence
@@ -138,7 +138,7 @@ class _ModeVariation:
         return moves
 
     def rates(self, t: float, state: Numbers) -> Numbers:
-        """Return the rates of the state, shape (2n,)."""
+        """Return the time derivative of the state, shape (2n,)."""
         solved = self.mode.engine.solutions(np.array([t]), state[:, None])
         return np.concatenate([state[len(self.problem.coordinates) :], solved.accelerations[:, 0]])
 
@@ -183,7 +183,7 @@ class _ModeVariation:
         return {name: rows[:-1, 0] + rows[-1, 0] * delays for name, rows in found.items()}
 
     def _along_motion(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Return time, state and derivatives with their rates, for `derivatives`."""
+        """Return time, state and derivatives with their time derivatives, for `derivatives`."""
         moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)
         return np.array([t]), state[:, None], moves[:, :, None]
 

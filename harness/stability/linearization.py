@@ -5,7 +5,7 @@ and P, R, S the solutions of
 
     J P = -U,        J R = -J' N,        J S = -(J' P + U')
 
-that are orthogonal to N in the mass metric, where ' is the rate along the motion. N moves with the motion so that
+that are orthogonal to N in the mass metric, where ' is the derivative along the motion. N moves with the motion so that
 N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then xi = N^T A dq and eta = N^T A dv satisfy
 
     xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
@@ -43,7 +43,7 @@ from .tangent import Tangent
 if TYPE_CHECKING:
     from ..figures.style import Picture
 
-RATES = ("u", "du", "ddu")  # a control, its rate and its acceleration
+RATES = ("u", "du", "ddu")  # a control, its time derivative and its acceleration
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
 ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
@@ -198,8 +198,8 @@ class Linearization(Shown):
         Parameters
         ----------
         input : str
-            ``u``, the controls' deviations, where their rates do not enter. ``ddot``, the controls' accelerations: u
-            and du/dt are states then, behind xi and eta.
+            ``u``: the controls' deviations, if their time derivatives do not enter. ``ddot``: the controls'
+            accelerations; u and du/dt are states then, after xi and eta.
         outputs : sequence of str or None
             None for all.
 
@@ -215,13 +215,13 @@ class Linearization(Shown):
         Raises
         ------
         ValueError
-            The rates of the controls enter, or there is no such input or output.
+            The time derivatives of the controls enter, or there is no such input or output.
         """
         rows = self._rows(outputs)
         parts = [[self.B[rate], self.D[rate][rows]] for rate in RATES]
         if input == "u":
             if any(part.any() for pair in parts[1:] for part in pair):
-                raise ValueError("the rates of the controls enter; take the input 'ddot'")
+                raise ValueError("the time derivatives of the controls enter; take the input 'ddot'")
             return self.A, parts[0][0], self.C[rows], parts[0][1]
         if input != "ddot":
             raise ValueError(f"unknown input {input!r}: expected 'u' or 'ddot'")

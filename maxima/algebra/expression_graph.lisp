@@ -419,7 +419,7 @@
   (rates (make-hash-table)))               ; node number -> term, if known
 
 (defun $graph_direction (equations)
-  "The direction in which symbols change at the rates given by  symbol = rate."
+  "The direction in which symbols have the time derivatives given by  symbol = derivative."
   (let ((direction (make-direction)))
     (dolist (e (cdr equations) direction)
       (setf (gethash (second e) (direction-seeds direction)) (expression-term (third e))))))

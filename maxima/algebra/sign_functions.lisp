@@ -126,7 +126,7 @@
           symbol))))
 
 ;;; 1/cosh(x) decays where cosh(x) leaves the range of numbers: as 2 E/(1 + E^2) with E = exp(-|x|) it is small there,
-;;; and so are its rates.
+;;; and so are its time derivatives.
 
 (defun $decaying (e)
   "The expression with the reciprocals of cosh in it written by what decays."

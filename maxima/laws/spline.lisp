@@ -1,6 +1,6 @@
 ;;; The cubic polynomials of a spline, from the points that it runs through       (table.mac)
 ;;;
-;;; The tridiagonal system for the second rates is eliminated from the first row down, then back. Times are fractions,
+;;; The tridiagonal system for the second derivatives is eliminated from the first row, then back. Times are fractions,
 ;;; heights may be other constants. With few points the solution is exact, but for fractions of more than spline_digits
 ;;; digits, which are rounded; with many it is computed in integers, multiples of a small unit, which is forty times as
 ;;; quick.
@@ -10,7 +10,7 @@
 (defvar *few-points* 64 "Up to which the solution is exact.")
 
 (defun $spline_curvatures (rows ends)
-  "Second rates at the points; ENDS is false, or the list of the rates at both ends."
+  "Second time derivatives at the points; ENDS is false, or the list of the slopes at both ends."
   (let* ((times (mapcar #'(lambda (row) (rational-of (second row))) (cdr rows)))
          (h (mapcar #'- (cdr times) times))
          (clamped (if ends 1 0)))
@@ -67,7 +67,7 @@
     solution))
 
 (defun differences-of-slopes (slopes ends difference)
-  "The right side: at the ends zero, or what the rates there, ENDS, ask for."
+  "The right side: at the ends zero, or what the slopes there, ENDS, ask for."
   (append (list (if ends (funcall difference (first ends) (first slopes)) 0))
           (mapcar difference slopes (cdr slopes))
           (list (if ends (funcall difference (car (last slopes)) (second ends)) 0))))

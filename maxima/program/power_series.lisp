@@ -120,7 +120,7 @@
 
 (defstruct series-machine
   (definitions (make-hash-table))          ; symbol -> term
-  (rates (make-hash-table))                ; symbol -> its rate, a term and in the end a series
+  (rates (make-hash-table))                ; symbol -> its time derivative, a term and in the end a series
   (series (make-hash-table))               ; node number -> series
   (steps nil)                              ; list of (series . rule), the last first
   (functions nil)                          ; whose derivatives are still to be looked up

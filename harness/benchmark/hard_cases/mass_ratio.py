@@ -79,7 +79,7 @@ def falling(t: mpf) -> list[mpf]:
 
 
 def hanging(direction: float, bend: float) -> Vector:
-    """Return places and velocities of both masses, the rods turning at their rates.
+    """Return places and velocities of both masses, the rods turning with their angular velocities.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def hanging(direction: float, bend: float) -> Vector:
     Returns
     -------
     Vector, shape (8,)
-        x1, y1, x2, y2 and their rates.
+        x1, y1, x2, y2 and their time derivatives.
     """
     upper, lower = np.exp(1j * direction), np.exp(1j * (direction + bend))
     places = np.array([upper, upper + lower])
@@ -105,7 +105,7 @@ def certified_accelerations(state: Vector) -> list[mpf]:
     Parameters
     ----------
     state : Vector, shape (8,)
-        x1, y1, x2, y2 and their rates.
+        x1, y1, x2, y2 and their time derivatives.
 
     Returns
     -------

@@ -183,7 +183,7 @@ def bordered_accelerations(A: Matrix, h: Vector, J: Matrix, c: Vector) -> Vector
     J : Matrix, shape (g, n)
         Jacobian of the constraints.
     c : Vector, shape (g,)
-        Terms of the constraints' second rates without accelerations.
+        Terms of the constraints' second time derivatives without accelerations.
 
     Returns
     -------

@@ -91,7 +91,7 @@ def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
     digits : list of float
         Correct digits of each measurement.
     slope : float
-        Rate of log(seconds) per digit.
+        Slope of log(seconds) by digits.
     """
     digits = [-math.log10(m.error) for m in measurements]
     slope, _ = np.polyfit(digits, [math.log(m.seconds) for m in measurements], 1)

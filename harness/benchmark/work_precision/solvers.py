@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RightHandSide:
-    """The rates of the state (q, dot q), from a compiled function of t and the state.
+    """The time derivative of the state (q, dot q), from a compiled function of t and the state.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class RightHandSide:
         return rates
 
     def fill(self, t: float, state: NDArray[np.float64], rates: NDArray[np.float64]) -> None:
-        """Write the rates into an array, as SUNDIALS requires.
+        """Write the time derivatives into an array, as SUNDIALS requires.
 
         Parameters
         ----------
@@ -102,7 +102,7 @@ def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], 
     method : str
         ``DOP853``, ``LSODA`` or ``Radau``.
     motion : CompiledRates
-        Rates of the state.
+        Time derivative of the state.
     span : (float, float)
         First and last time.
     start : ndarray, shape (2n,)
@@ -135,7 +135,7 @@ def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float
     method : str
         ``Adams`` or ``BDF``.
     motion : CompiledRates
-        Rates of the state.
+        Time derivative of the state.
     span : (float, float)
         First and last time.
     start : ndarray, shape (2n,)

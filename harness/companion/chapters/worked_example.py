@@ -24,7 +24,7 @@ from . import FREE_SCENE, INITIAL_SCENE, PAPER
 
 FIRST_NUMBER = "14"
 UNTIL, SAMPLES = Fraction(3), 2001
-RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its rates
+RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its time derivatives
 
 
 @dataclass(frozen=True)

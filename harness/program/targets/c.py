@@ -1,7 +1,8 @@
 """A scene's model as a C11 library: source, header, CMakeLists.txt and a driver.
 
 Every public name begins with the library's name, so several libraries link into one program. Vectors are arrays whose
-indices the header enumerates. The array ``u`` contains the controls, then their rates, then their second rates.
+indices the header enumerates. The array ``u`` contains the controls, then their time derivatives, then their second
+time derivatives.
 """
 
 import re
@@ -84,7 +85,7 @@ def explanation(model: Model) -> str:
         Text for the header.
     """
     inputs = [
-        f"the controls {', '.join(model.controls)}, each with its rate and second rate" if model.controls else "",
+        f"the controls {', '.join(model.controls)}, each with two time derivatives" if model.controls else "",
         f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
     ]
     given = " and ".join(filter(None, inputs)) or "none"

@@ -1,7 +1,8 @@
 """A scene's model as an FMI 3.0 unit for model exchange, with its C sources.
 
-Controls with their rates and second rates are inputs, which start at the values of the control law. Open parameters are
-tunable. Coordinates and velocities are states. They, accelerations, multipliers and the scene's outputs are outputs.
+Controls with their time derivatives and second time derivatives are inputs, which start at the values of the control
+law. Open parameters are tunable. Coordinates and velocities are states. They, accelerations, multipliers and the
+scene's outputs are outputs.
 """
 
 import hashlib

@@ -78,7 +78,7 @@ def _handles(functions: Iterable[ModelFunction], model: Model) -> Iterator[str]:
         yield f"model.{each.name} = @{each.name};"
         yield f"model.outputs.{each.name} = {{{_names(each.program.outputs)}}};"
     if has_law(model):
-        yield "model.rhs = @rhs;  % the rates of y under the law"
+        yield "model.rhs = @rhs;  % the time derivatives of y under the law"
 
 
 def _formulas(function: ModelFunction, model: Model) -> str:

@@ -39,7 +39,7 @@ void @{name}_motion(double t, const double *q, const double *v, const double *u,
 void @{name}_motion_batch(size_t points, const double *t, const double *q, const double *v, const double *u,
     const double *p, double *a, double *lambda);
 
-/* Residuals f of the constraints and their rates df/dt. */
+/* Residuals f of the constraints and their time derivatives df/dt. */
 void @{name}_residual(double t, const double *q, const double *v, const double *u, const double *p,
     double *f, double *rate);
 

@@ -6,7 +6,7 @@
        accelerations                               and, where the constraints are to be kept,
        position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
                                                    moved to them, or with Baumgarte's or Gear's (GGL) terms, which
-                                                   add to the rates so that what is missed dies out like
+                                                   add to the time derivatives of the state so that what is missed dies out like
                                                    exp(-GAMMA t).                                                */
 
 #include <float.h>
@@ -34,7 +34,7 @@ static double tolerance;
 static double nominal_time, nominal[STATE];       /* sizes that the tolerance is relative to, too                   */
 static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
-static double slope[STATE];                       /* rates at the last state, where they are known                */
+static double slope[STATE];                       /* time derivatives at the last state, where they are known                */
 static int slope_known;
 
 /* Comparisons, which a processor makes side by side. */
@@ -45,7 +45,7 @@ static int are_finite(int count, const double *x)
     return !others;
 }
 
-/* d and e of stabilization.py, added to the rates. */
+/* d and e of stabilization.py, added to the time derivatives of the state. */
 static void stabilize(double t, const double *state, double *out)
 {
 #ifdef GAMMA
@@ -72,7 +72,7 @@ static void evaluate(double t, const double *state, double *out)
     evaluations++;
 }
 
-/* Returns whether the rates are not finite. */
+/* Returns whether the time derivatives are not finite. */
 static int rates(double t, const double *state, double *out)
 {
     evaluate(t, state, out);
@@ -94,7 +94,7 @@ static double size_of(const double *x, const double *state)
     for (int i = 0; i < STATE; i++) w[i] = y[i] + h*(sum); \
     evaluate(t + fraction*h, w, k##number);
 
-/* One step, from rates k1 to rates k13. A stage that is not finite makes the solution, and its rates, not finite either:
+/* One step, from time derivatives k1 to time derivatives k13. A stage that is not finite makes the solution, and its time derivatives, not finite either:
    returns whether they are. A step that succeeds has dense output of order 7, unless it is NULL. */
 static int take_step(double t, double h, double *y, const double *k1, double *k13, double (*dense)[STATE])
 {

@@ -5,10 +5,10 @@ states that satisfy the constraints and kept between them, because rounding or a
 it. For singular configurations, the least singular value that counts is monitored. If it runs to zero, one arc spans
 the zero (`singular_arc`), and all steps before end at half of the distance.
 
-DOP853 takes the steps, of order 8. Two of its stages are at the end of a step: the difference of the rates between
-them, relative to that of the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential Equations
-II, section IV.2). If steps stay at the boundary of its stability, Radau's method replaces it, of order 5 and stable for
-stiff motions.
+DOP853 takes the steps, of order 8. Two of its stages are at the end of a step: the difference of the time derivatives
+between them, relative to that of the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential
+Equations II, section IV.2). If steps stay at the boundary of its stability, Radau's method replaces it, of order 5 and
+stable for stiff motions.
 """
 
 import time
