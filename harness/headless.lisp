@@ -185,13 +185,13 @@ before all, outcome, mark)."
     (one-line (with-output-to-string (*standard-output*) ($errormsg)))))
 
 (defun lisp-message (condition)
-  "What a Lisp condition says, without the function that GCL says it in; of what is of a wrong type, that itself."
+  "Return the message of a Lisp condition, without GCL's name of the function; for a wrong type, the value itself."
   (let ((said (one-line (if (typep condition 'simple-condition)
                             (apply #'format nil (simple-condition-format-control condition)
                                    (simple-condition-format-arguments condition))
                             (princ-to-string condition)))))
     (if (and (string= said "") (typep condition 'type-error))
-        (format nil "~A is no ~(~A~)" (as-text (type-error-datum condition)) (type-error-expected-type condition))
+        (format nil "~A is not of type ~(~A~)" (as-text (type-error-datum condition)) (type-error-expected-type condition))
         said)))
 
 (defun as-text (datum)

@@ -1,6 +1,8 @@
 """Words of the glossary that the project no longer uses, in prose, identifiers and documents."""
 
+import io
 import re
+import tokenize
 from pathlib import Path
 
 import pytest
@@ -48,6 +50,17 @@ REPLACED = {
     r"told_apart|_said|said_|_told": "distinguished, reported",
     r"stretch(?:es)?": "sample block",
     r"by hand of|as far as known|none but": "plain words",
+    r"judge[sd]?|judging|candidates?": "verify, benchmark case",
+    r"obstacles?": "obstruction",
+    r"doubtful|unconfined|kept_at|held_up": "inaccurate, unsandboxed, place_of, rejected",
+}
+# Words that comments, docstrings, messages and descriptions of schemas no longer use; identifiers may.
+REPLACED_IN_PROSE = {
+    r"says?|said|tells?|told": "states, reports, returns, message",
+    r"beside": "besides, with, relative to, in the folder of",
+    r"(?:its|their|first|second|the) rates?": "time derivative, velocity, slope",
+    r"at (?:the|a) start|of (?:the|a) start|from the start": "initial time, initial state",
+    r"(?<!there )(?:is|are) no(?! longer| later| other)": "is not",
 }
 # Files in which a word has another meaning, with the reason.
 ALLOWED = {
@@ -58,6 +71,20 @@ ALLOWED = {
         "tests/test_maxima.py": "text that a scene prints",
     },
     r"lanes?": {"harness/program/": "SIMD lanes of a vector in C", "tests/program/": "the same"},
+    r"judge[sd]?|judging|candidates?": {
+        "harness/simulation/control_matrix.py": "candidates for zeros",
+        "maxima/algebra/simplify.mac": "candidates for a form",
+        "maxima/general/initial_state.mac": "candidates for roots",
+    },
+    r"beside": {"harness/cli/beside.py": "the module's name"},
+    r"(?:its|their|first|second|the) rates?": {
+        "harness/simulation/": "decay rates",
+    },
+    r"at (?:the|a) start|of (?:the|a) start|from the start": {
+        "harness/headless.lisp": "a place in a file",
+        "harness/simulation/sensitivities.py": "the beginning of a part",
+        "harness/companion/excerpts.py": "a place in a file",
+    },
 }
 SKIPPED = (
     "harness/companion/",
@@ -83,6 +110,51 @@ def sources():
         for name, file in named.items()
         if not name.startswith(SKIPPED)
     }
+
+
+COMMENT = r"/\*.*?\*/"
+STRING = r'"(?:\\.|[^"\\])*"'
+PROSE = {  # by suffix: what is read by people in a file
+    ".mac": re.compile(f"{COMMENT}|{STRING}", re.DOTALL),
+    ".lisp": re.compile(rf";[^\n]*|{STRING}"),
+    ".json": re.compile(rf'(?<="description": ){STRING}'),
+}
+
+
+def prose(file):
+    """Yield the line and the text of comments, docstrings and strings with blanks."""
+    text = file.read_text(encoding="utf-8")
+    if file.suffix == ".py":
+        tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+        found = [
+            (token.start[0], token.string) for token in tokens if token.type in (tokenize.COMMENT, tokenize.STRING)
+        ]
+    else:
+        matches = PROSE[file.suffix].finditer(text)
+        found = [(text.count("\n", 0, each.start()) + 1, each[0]) for each in matches]
+    yield from ((line + k, each) for line, part in found if " " in part for k, each in enumerate(part.splitlines()))
+
+
+@pytest.fixture(scope="module")
+def proses():
+    files = [
+        each for name in ("harness", "maxima") for each in (ROOT / name).rglob("*") if each.suffix in {".py", *PROSE}
+    ]
+    return {each.relative_to(ROOT).as_posix(): list(prose(each)) for each in files}
+
+
+@pytest.mark.parametrize("word", REPLACED_IN_PROSE)
+def test_an_old_word_is_in_no_prose(proses, word):
+    pattern = re.compile(rf"(?<![A-Za-z`_])(?:{word})(?![A-Za-z_])", re.IGNORECASE)
+    allowed = tuple(ALLOWED.get(word, ()))
+    found = [
+        f"{name}:{number}: {line.strip()}"
+        for name, lines in proses.items()
+        if not (allowed and name.startswith(allowed))
+        for number, line in lines
+        if pattern.search(line)
+    ]
+    assert found == [], f"the word is {REPLACED_IN_PROSE[word]}"
 
 
 @pytest.mark.parametrize("word", REPLACED)

@@ -213,7 +213,7 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     require_given(checked, derived)
     pairs = (
         *_vanishing("constraint", checked.system.constraints),
-        *_vanishing("rate of constraint", checked.derivation.stated.constraint_derivatives),
+        *_vanishing("derivative of constraint", checked.derivation.stated.constraint_derivatives),
     )
     return at_start(checked, pairs)
 

@@ -63,10 +63,10 @@ def values_of_start(
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             slopes = motion.tape.gradient(RATE, values, {place: (mp.one,)})
-            for order, rate in enumerate(("", "rate of ")):
+            for order, prefix in enumerate(("", "derivative of ")):
                 value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
                 size += mp.fsum(abs(x) for q in slopes.keys() & coordinates for x in _changes(slopes, start, q, order))
-                yield ComparedValue(f"{rate}{what} {beta} at the initial time", value, mp.zero, size)
+                yield ComparedValue(f"{prefix}{what} {beta} at the initial time", value, mp.zero, size)
 
 
 def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int) -> list[mp.mpf]:

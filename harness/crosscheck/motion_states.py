@@ -357,7 +357,7 @@ def values_of_matrices(
         right = system.right[system.n + beta]
         yield ComparedValue(f"constraint {beta + 1}", computed[f"residual[{beta + 1}]"][0], f[0], abs(f[0]))
         yield ComparedValue(
-            f"rate of constraint {beta + 1}", computed[f"residual_rate[{beta + 1}]"][0], f[1], abs(f[1])
+            f"derivative of constraint {beta + 1}", computed[f"residual_rate[{beta + 1}]"][0], f[1], abs(f[1])
         )
         size = mp.fsum(map(abs, terms)) + abs(right)
         yield ComparedValue(f"second time derivative of constraint {beta + 1}", mp.fsum(terms) - right, 2 * f[2], size)

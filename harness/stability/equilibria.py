@@ -192,7 +192,7 @@ def find_equilibria(
     Parameters
     ----------
     problem : MotionProblem
-        A motion of the scene, whose nominal sizes the starts have.
+        A motion of the scene. The initial states have its nominal sizes.
     equations : LinearEquations
         Of the same scene.
     controls : mapping of str to float

@@ -24,5 +24,5 @@
   '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma") (t . "True") (nil . "False")))
 
 (defun $reads_as_constant (name)
-  "Whether a document that holds the name says a number or a truth value."
+  "Return true if a document that contains the name states a number or a truth value."
   (and (member (letters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))

@@ -75,7 +75,7 @@
 ;;; ---- the polynomials ---------------------------------------------------------------------------------
 
 (defun $spline_from (rows curvatures time)
-  "[points, second rates] from the last point that is no later, if any is but the last, and of all after it."
+  "[points, second derivatives] from the last point that is no later, if any is but the last, and of all after it."
   (let ((rows (cdr rows)) (curvatures (cdr curvatures)) (time (rational-of time)))
     (do () ((or (null (cddr rows)) (> (rational-of (second (second rows))) time)))
       (setq rows (cdr rows) curvatures (cdr curvatures)))

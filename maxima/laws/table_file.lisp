@@ -76,14 +76,14 @@
       (setq begin (1+ place)))))
 
 (defun decimal-fraction (text)
-  "-12.5e-3 as the fraction that it is; nil for what is no number."
+  "Return a number such as -12.5e-3 as a fraction, or nil for another text."
   (let* ((e (position-if #'(lambda (c) (find c "eE")) text))
          (mantissa (signed-parts (subseq text 0 e)))
          (exponent (if e (ignore-errors (parse-integer text :start (1+ e))) 0)))
     (when (and mantissa exponent (<= (abs exponent) *largest-exponent*)) (* mantissa (expt 10 exponent)))))
 
 (defun signed-parts (text)
-  "The fraction that digits with a sign and a point say; nil where they do not."
+  "Return the fraction with these digits, sign and point, or nil."
   (let ((point (position #\. text)) (number (ignore-errors (parse-integer (remove #\. text :count 1)))))
     (if (and number (not (find-if #'(lambda (c) (find c "+-")) text :start 1)))
         (/ number (expt 10 (if point (- (length text) point 1) 0))))))

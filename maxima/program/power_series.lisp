@@ -385,7 +385,7 @@
 (defun larger (x y) (if (and x y) (max x y) (or x y)))
 
 (defun sizes-by-order (rows)
-  "Binary magnitude of the largest coefficient that both expansions know of each order and the orders beside it;
+  "Binary magnitude of the largest coefficient that both expansions know of each order and its two neighbours;
 where there is none, of the nearest order before, or else after."
   (let* ((known (reduce #'(lambda (some more) (mapcar #'larger some more))
                         (mapcar #'(lambda (row) (mapcar #'known-magnitude row)) rows)))

@@ -201,7 +201,7 @@
           (or (get symbol 'alias) symbol)))))
 
 (defun described-number (digits)
-  "An integer, or the fraction that decimal digits say."
+  "Return an integer, or the fraction with these decimal digits."
   (maxima-number
    (if (find-if #'(lambda (c) (find c ".eE")) digits) (decimal-fraction digits) (parse-integer digits))))
 

@@ -257,7 +257,7 @@ def test_sandbox_that_fails_for_a_while_ends_the_command(answer, tmp_path, monke
 
 @needs_sandbox
 @pytest.mark.parametrize("few", [8, 10, 14])
-def test_too_few_descriptors_never_run_the_scene_unconfined(few, tmp_path):
+def test_too_few_descriptors_never_run_the_scene_without_limits(few, tmp_path):
     target = tmp_path / "victim"
     file = scene(tmp_path / "scn", f"touch {target}")
     command = f"ulimit -n {few}; exec {sys.executable} -m holonom derive {file}"

@@ -42,7 +42,7 @@ class RightHandSide:
         self._addresses = ctypes.c_void_p(self._given.ctypes.data), ctypes.c_void_p(self._found.ctypes.data)
 
     def __call__(self, t: float, state: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Rates in a new array, as SciPy asks for them."""
+        """Return the time derivative of the state in a new array, as SciPy requires."""
         rates = np.empty(2 * self.coordinates)
         self.fill(t, state, rates)
         return rates

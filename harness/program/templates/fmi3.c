@@ -4,7 +4,7 @@
 
        0            time
        Q, V         coordinates and velocities: the continuous states
-       U            controls, their time derivatives, their second rates: inputs
+       U            controls, their first and second time derivatives: inputs
        P            parameters
        DQ, A        the states' derivatives
        LAMBDA       multipliers

@@ -28,7 +28,7 @@ void @{name}_start(double *t, double *q, double *v);
 /* The scene's values of the parameters; NAN for those to which it gives none. */
 void @{name}_values(double *p);
 
-/* The control law with its rates: @{law}. Other controls are left as they are. */
+/* The control law with its time derivatives: @{law}. Other controls are left as they are. */
 void @{name}_law(double t, const double *p, double *u);
 
 /* Accelerations a and multipliers lambda; infinite or NAN where a pivot vanishes, which is outside the range above. */

@@ -18,7 +18,7 @@ def trues(tmp_path_factory):
     return list(true_records(written_texts(folder, (KINKS, CIRCLE))))
 
 
-def test_true_records_are_not_held_up(trues):
+def test_true_records_are_not_rejected(trues):
     assert [why for true in trues if (why := rejected(true.record, true, SEED))] == []
 
 
@@ -29,24 +29,24 @@ def require_found(trues, kinds):
     assert {each.kind for each in wrong} == {*kinds}
 
 
-def test_wrong_records_of_some_classes_are_held_up(trues):
+def test_wrong_records_of_some_classes_are_rejected(trues):
     require_found(trues, random.Random(SEED).sample(sorted(CLASSES), SOME))
 
 
 @pytest.mark.long
-def test_records_and_motions_of_some_other_scenes_are_held_up(tmp_path):
+def test_records_and_motions_of_some_other_scenes_are_rejected(tmp_path):
     found = list(of_other_scenes(tmp_path, random.Random(SEED), 3))
     assert [(kind, what) for kind, what, why in found if not why] == []
 
 
 @pytest.mark.long
-def test_records_and_motions_of_other_scenes_are_held_up(tmp_path):
+def test_records_and_motions_of_other_scenes_are_rejected(tmp_path):
     found = list(of_other_scenes(tmp_path, random.Random(SEED), len(OTHERS)))
     assert [(kind, what) for kind, what, why in found if not why] == []
 
 
 @pytest.mark.long
-def test_a_wrong_record_of_each_class_is_held_up(trues):
+def test_a_wrong_record_of_each_class_is_rejected(trues):
     require_found(trues, tuple(CLASSES))
 
 
