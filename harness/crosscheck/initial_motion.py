@@ -89,7 +89,7 @@ class CheckedScene:
 
     @cached_property
     def control_law(self) -> Definitions:
-        """Controls and their time derivatives as functions of time, by the scene's control law."""
+        """Controls and their derivatives as functions of time, by the scene's law."""
         definitions: dict[sp.Symbol, sp.Expr] = {}
         for name, law in self.law.items():
             for symbol in history(sp.Symbol(name, real=True)):

@@ -53,7 +53,7 @@ class Model:
 
     @property
     def histories(self) -> tuple[str, ...]:
-        """Names of the controls, of their time derivatives, and of their second time derivatives."""
+        """Names of the controls and of their first and second time derivatives."""
         return tuple(history.format(name) for history in ("{}", "dot({})", "ddot({})") for name in self.controls)
 
     @property

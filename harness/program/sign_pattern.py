@@ -243,7 +243,7 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
 
 
 def at_start(problem: MotionProblem) -> MotionProblem:
-    """Return the motion as it begins: each table is the polynomial around the initial time.
+    """Return the initial motion: each table is the polynomial around that time.
 
     Parameters
     ----------

@@ -119,7 +119,7 @@ def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray
 
 
 def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64], direction: str) -> None:
-    """Reject an initial state that is the nearest of many to a guess off the constraints.
+    """Reject an initial state that is the nearest of many to an inconsistent guess.
 
     It moves with the curvature of the constraints, too.
     """

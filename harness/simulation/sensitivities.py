@@ -183,7 +183,7 @@ class _ModeVariation:
         return {name: rows[:-1, 0] + rows[-1, 0] * delays for name, rows in found.items()}
 
     def _along_motion(self, t: float, state: Numbers, moves: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-        """Return time, state and derivatives with their time derivatives, for `derivatives`."""
+        """Return time, state, X and their time derivatives, for `derivatives`."""
         moves = np.concatenate([moves, self.rates(t, state)[:, None]], axis=1)
         return np.array([t]), state[:, None], moves[:, :, None]
 

@@ -160,7 +160,7 @@ class LinearizedMotion(Shown):
 
     @property
     def growth(self) -> Vector:
-        """The longest deviation of all that have length one at the initial time, shape (k,)."""
+        """The longest deviation of all with initial length one, shape (k,)."""
         return np.array([np.linalg.norm(each, 2) for each in self.transition])
 
     def response(self, output: str) -> Matrix:

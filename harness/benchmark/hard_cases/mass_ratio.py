@@ -79,7 +79,7 @@ def falling(t: mpf) -> list[mpf]:
 
 
 def hanging(direction: float, bend: float) -> Vector:
-    """Return places and velocities of both masses, the rods turning with their angular velocities.
+    """Return positions and velocities of both masses.
 
     Parameters
     ----------

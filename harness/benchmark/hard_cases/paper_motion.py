@@ -119,7 +119,7 @@ def _vanishing(solve: SolveAt, t: mpf) -> float:
 
 
 def _zero(multiplier: float, t: float) -> float:
-    """Digits to which the constraint force vanishes among the forces at the initial time."""
+    """Digits to which the initial constraint force vanishes among the forces."""
     return digits_of_error(constraint_force(multiplier, mpf(t)), max(map(abs, forces(mpf(0)))))
 
 

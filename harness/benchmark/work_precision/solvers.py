@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class RightHandSide:
-    """The time derivative of the state (q, dot q), from a compiled function of t and the state.
+    """The time derivative of the state, from a compiled function of t and the state.
 
     Parameters
     ----------
