@@ -3,8 +3,8 @@
 Residuals and gradients are SymPy's, of the description alone. Nothing is solved a second time in the same way:
 
 - The columns of C and D, with the accelerations that belong to them, are put into the gradients of Lagrange's equations
-  and of the constraints, which must vanish. The rates of xi = N^T A dq and eta = N^T A dv must be the rows of A and B.
-- Eigenvalues and modes are put into A x = s x. Power sums tell whether all eigenvalues are there.
+  and of the constraints, which must vanish. The derivatives of xi = N^T A dq and eta = N^T A dv must be rows of A, B.
+- Eigenvalues and modes are put into A x = s x. Power sums show if all eigenvalues are there.
 - States at rest are put into the equations. Their eigenvalues are those of a quadratic pencil between null spaces.
 """
 
@@ -144,7 +144,7 @@ class DescribedEquations:
         return found
 
     def law(self, t: float) -> dict[str, float]:
-        """Return the controls with a law and their rates at a time.
+        """Return the controls with a law and their derivatives at a time.
 
         Parameters
         ----------

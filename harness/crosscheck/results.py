@@ -48,7 +48,7 @@ def read_result(file: Path) -> Content:
     Raises
     ------
     HolonomError
-        It is no such document.
+        It is not such a document.
     """
     try:
         content = json.loads(file.read_text("utf-8"))
@@ -99,7 +99,7 @@ def _verify_derivatives(description: Description, content: Content) -> CheckResu
     try:
         wrong = differing(partial(_derivatives, DescribedMotion(description, scene), content), digits)
     except IrregularPoint:
-        return CheckResult(Verdict.UNDECIDED, None, None, "an expression has no value at the start")
+        return CheckResult(Verdict.UNDECIDED, None, None, "an expression has no initial value")
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 

@@ -71,7 +71,7 @@ class Linearization(Shown):
         Names of the r inputs and of the entries of y: coordinates, velocities, multipliers, controls in forces that
         servo-constraints find, outputs of the scene.
     point : mapping of str to float
-        Time, state, accelerations, multipliers and controls with their rates, by name.
+        Time, state, accelerations, multipliers and controls with their derivatives, by name.
     mass : ndarray, shape (n, n)
         The mass matrix.
     basis : ndarray, shape (n, m)
