@@ -5,6 +5,7 @@ puts there. Whatever is done, there is one sentence, the exit status, no traceba
 left in the directory for temporary files.
 """
 
+import errno
 import os
 import re
 from collections import Counter
@@ -13,7 +14,10 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from particle import PARTICLE
+from refusing import message_of
 from shell import SHELL
+
+from holonom.failures import ErrorKind
 
 MACHINE_AT_FAULT = 3
 SHORT = 1  # row with the same sentence in the short form
@@ -31,7 +35,7 @@ class Fault:
     command : str
         What follows ``holonom``, words with blanks between them.
     says : str
-        What the sentence holds; empty where all goes well.
+        Pattern of the message, empty if there is none.
     status : int
     prepare : callable or None
         Given the directory.
@@ -93,82 +97,129 @@ NO_PROGRAMS = {"PATH": "{here}"}
 DERIVE = "derive scene.mac --json out.json"
 
 OPTIONS = [
-    Fault("an unknown command", "surprise", "No such command"),
-    Fault("an unknown option", "derive scene.mac --surprise", "No such option"),
-    Fault("no scene", "derive", "Missing argument"),
-    Fault("no order", "series scene.mac", "Missing option"),
+    Fault("an unknown command", "surprise", message_of(None, "surprise")),
+    Fault("an unknown option", "derive scene.mac --surprise", message_of(None, "--surprise")),
+    Fault("no scene", "derive", message_of(None, "SCENE")),
+    Fault("no order", "series scene.mac", message_of(None, "--order")),
     *(
-        Fault(f"a time limit of {text}", f"derive scene.mac --time-limit {text}", "--time-limit")
+        Fault(f"a time limit of {text}", f"derive scene.mac --time-limit {text}", message_of(None, "--time-limit"))
         for text in ("nan", "inf", "0", "-1", "1e400", "soon", "1e10")
     ),
     *(
-        Fault(f"a memory limit of {text}", f"derive scene.mac --memory-limit {text}", "--memory-limit")
+        Fault(
+            f"a memory limit of {text}", f"derive scene.mac --memory-limit {text}", message_of(None, "--memory-limit")
+        )
         for text in ("0", "1", "-5", "1e3", "99999999999999999999")
     ),
     *(
-        Fault(f"an end at {text}", f"simulate scene.mac --until {text}", "invalid time")
+        Fault(f"an end at {text}", f"simulate scene.mac --until {text}", message_of(ErrorKind.NOT_A_TIME))
         for text in ("soon", "nan", "inf", "1/0", "1e400", "1e-400", "1e1000000000", "9" * 400)
     ),
-    Fault("a sum at 1e400", "series scene.mac --order 4 --at 1e400", "invalid time"),
+    Fault("a sum at 1e400", "series scene.mac --order 4 --at 1e400", message_of(ErrorKind.NOT_A_TIME)),
     *(
-        Fault(f"{text} samples", f"simulate scene.mac --samples {text}", "--samples")
+        Fault(f"{text} samples", f"simulate scene.mac --samples {text}", message_of(None, "--samples"))
         for text in ("0", "1", "-3", "1.5", "many")
     ),
-    *(Fault(f"an order of {text}", f"series scene.mac --order {text}", "--order") for text in ("1", "-1", "x")),
-    Fault("no digits", "series scene.mac --order 4 --digits 0", "--digits"),
-    Fault("an unknown engine", "simulate scene.mac --engine steam", "--engine"),
-    Fault("an unknown stabilization", "simulate scene.mac --stabilization hope", "--stabilization"),
-    Fault("an unknown solve", "program scene.mac --solve luck", "--solve"),
-    Fault("an unknown form", "program scene.mac --to cobol", "--to"),
-    Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", "exclude each other"),
-    Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", "exclude each other"),
     *(
-        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "invalid setting")
+        Fault(f"an order of {text}", f"series scene.mac --order {text}", message_of(None, "--order"))
+        for text in ("1", "-1", "x")
+    ),
+    Fault("no digits", "series scene.mac --order 4 --digits 0", message_of(None, "--digits")),
+    Fault("an unknown engine", "simulate scene.mac --engine steam", message_of(None, "--engine")),
+    Fault("an unknown stabilization", "simulate scene.mac --stabilization hope", message_of(None, "--stabilization")),
+    Fault("an unknown solve", "program scene.mac --solve luck", message_of(None, "--solve")),
+    Fault("an unknown form", "program scene.mac --to cobol", message_of(None, "--to")),
+    Fault("trusted and needs_sandbox in", "derive scene.mac --trust --sandbox", message_of(None)),
+    Fault("exact and in digits", "series scene.mac --order 4 --exact --digits 9", message_of(None)),
+    *(
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", message_of(ErrorKind.NOT_A_SETTING))
         for text in ("m", "m=", "m=x", "=1", "m=1e", "m=system(1)", "m=1;quit()")
     ),
     *(
-        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", "outside the range of double precision")
+        Fault(f"{text} as a setting", f"derive scene.mac --set {text}", message_of(ErrorKind.SETTING_TOO_LARGE))
         for text in ("m=1e400", "m=1e-400", "m=1e1000000000", f"m={'9' * 400}")
     ),
     *(
-        Fault(f"a precision of {text}", f"simulate scene.mac --until 1 --precision {text}", "expected double, extended")
+        Fault(
+            f"a precision of {text}",
+            f"simulate scene.mac --until 1 --precision {text}",
+            message_of(ErrorKind.NOT_A_PRECISION, text),
+        )
         for text in ("0", "-1", "5001", "1e9", "very")
     ),
-    Fault("a name that no scene has", "simulate scene.mac --scene a;b", "cannot be the name of a scene"),
+    Fault("a name that no scene has", "simulate scene.mac --scene a;b", message_of(ErrorKind.NOT_A_SCENE_NAME)),
 ]
 
 OUTPUTS = [
-    Fault("the record in the scene's place", "derive scene.mac --json scene.mac", "the scene itself"),
-    Fault("the article in the scene's place", "derive scene.mac --tex ./scene.mac", "the scene itself"),
-    Fault("the program in the scene's place", "program scene.mac --to python -o scene.mac", "the scene itself"),
-    Fault("the library in the scene's place", "program scene.mac --to c -o scene.mac", "the scene itself"),
-    Fault("the unit in the scene's place", "program scene.mac --to fmu -o scene.mac", "the scene itself"),
-    Fault("the verdicts in the scene's place", "check scene.mac --json scene.mac --force", "the scene itself"),
+    Fault(
+        "the record in the scene's place",
+        "derive scene.mac --json scene.mac",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
+    Fault(
+        "the article in the scene's place",
+        "derive scene.mac --tex ./scene.mac",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
+    Fault(
+        "the program in the scene's place",
+        "program scene.mac --to python -o scene.mac",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
+    Fault(
+        "the library in the scene's place",
+        "program scene.mac --to c -o scene.mac",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
+    Fault(
+        "the unit in the scene's place",
+        "program scene.mac --to fmu -o scene.mac",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
+    Fault(
+        "the verdicts in the scene's place",
+        "check scene.mac --json scene.mac --force",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
+    ),
     Fault(
         "the scene by a symbolic link",
         "derive scene.mac --json link",
-        "the scene itself",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
         prepare=lambda here: (here / "link").symlink_to("scene.mac"),
     ),
     Fault(
         "the scene by a second name",
         "derive scene.mac --json hardlink",
-        "the scene itself",
+        message_of(ErrorKind.OUTPUT_TAKEN, "scene"),
         prepare=lambda here: os.link(here / "scene.mac", here / "hardlink"),
     ),
-    Fault("two outputs of one name", "derive scene.mac --json out --tex out", "another output"),
-    Fault("two outputs of one name, spelt apart", "derive scene.mac --json out --tex ./out", "another output"),
-    Fault("two documents on standard output", "derive scene.mac --json - --tex -", "another output"),
-    Fault("samples and figure of one name", "simulate scene.mac -o x.svg --plot x.svg", "another output"),
-    Fault("no such directory", "derive scene.mac --json nowhere/out.json", "cannot be written"),
-    Fault("a directory", "derive scene.mac --json .", "cannot be written"),
-    Fault("a file as a directory", "derive scene.mac --json scene.mac/out.json", "cannot be written"),
-    Fault("too long a name", f"derive scene.mac --json {'x' * 300}", "cannot be written"),
+    Fault(
+        "two outputs of one name", "derive scene.mac --json out --tex out", message_of(ErrorKind.OUTPUT_TAKEN, "output")
+    ),
+    Fault(
+        "two outputs of one name, spelt apart",
+        "derive scene.mac --json out --tex ./out",
+        message_of(ErrorKind.OUTPUT_TAKEN, "output"),
+    ),
+    Fault(
+        "two documents on standard output",
+        "derive scene.mac --json - --tex -",
+        message_of(ErrorKind.OUTPUT_TAKEN, "output"),
+    ),
+    Fault(
+        "samples and figure of one name",
+        "simulate scene.mac -o x.svg --plot x.svg",
+        message_of(ErrorKind.OUTPUT_TAKEN, "output"),
+    ),
+    Fault("no such directory", "derive scene.mac --json nowhere/out.json", message_of(ErrorKind.UNWRITABLE)),
+    Fault("a directory", "derive scene.mac --json .", message_of(ErrorKind.UNWRITABLE)),
+    Fault("a file as a directory", "derive scene.mac --json scene.mac/out.json", message_of(ErrorKind.UNWRITABLE)),
+    Fault("too long a name", f"derive scene.mac --json {'x' * 300}", message_of(ErrorKind.UNWRITABLE)),
     *(
         Fault(
             f"an unrelated {name}",
             f"{command} {name}",
-            "the file exists",
+            message_of(ErrorKind.UNRELATED_FILE),
             prepare=holding(name, content),
         )
         for name, command, content in (
@@ -187,28 +238,48 @@ OUTPUTS = [
     Fault(
         "samples that may be replaced", "simulate scene.mac --until 1 -o x.csv --force", "", 0, holding("x.csv", "t\n")
     ),
-    Fault("no such format", "simulate scene.mac --until 1 -o out.xls", "unsupported file format"),
-    Fault("a directory of others for the companion", "companion scene.mac -o .", "other files than a companion"),
+    Fault("no such format", "simulate scene.mac --until 1 -o out.xls", message_of(ErrorKind.NO_SUCH_FORMAT)),
+    Fault("a directory of others for the companion", "companion scene.mac -o .", message_of(ErrorKind.NOT_A_COMPANION)),
 ]
 
 SCENES = [
-    Fault("no such file", "derive nowhere.mac", "file not found"),
-    Fault("a directory as a scene", "derive .", "not a regular file"),
+    Fault("no such file", "derive nowhere.mac", message_of(ErrorKind.FILE_MISSING)),
+    Fault("a directory as a scene", "derive .", message_of(ErrorKind.FILE_UNREADABLE)),
     Fault(
-        "a pipe without a writer", "derive pipe", "not a regular file", prepare=lambda here: os.mkfifo(here / "pipe")
+        "a pipe without a writer",
+        "derive pipe",
+        message_of(ErrorKind.FILE_UNREADABLE),
+        prepare=lambda here: os.mkfifo(here / "pipe"),
     ),
-    Fault("an endless device", "derive /dev/zero", "not a regular file"),
-    Fault("null characters", "derive null.mac", "null characters", prepare=holding("null.mac", b"x : 1$\0")),
+    Fault("an endless device", "derive /dev/zero", message_of(ErrorKind.FILE_UNREADABLE)),
+    Fault(
+        message_of(ErrorKind.FILE_UNREADABLE),
+        "derive null.mac",
+        message_of(ErrorKind.FILE_UNREADABLE),
+        prepare=holding("null.mac", b"x : 1$\0"),
+    ),
     Fault(
         "a title in Latin-1",
         "derive latin.mac",
-        "latin.mac:5: the file is not UTF-8 text: byte 0xe9",
+        message_of(ErrorKind.NOT_UTF8, "latin.mac:5", "0xe9"),
         prepare=holding("latin.mac", PARTICLE.replace("Particle", "Pärticlé").replace("ä", "a").encode("latin-1")),
     ),
-    Fault("UTF-16", "check wide.mac", "not UTF-8", prepare=holding("wide.mac", PARTICLE.encode("utf-16"))),
-    Fault("a link to itself", "derive loop", "cannot be read", prepare=lambda here: (here / "loop").symlink_to("loop")),
+    Fault(
+        "UTF-16",
+        "check wide.mac",
+        message_of(ErrorKind.NOT_UTF8),
+        prepare=holding("wide.mac", PARTICLE.encode("utf-16")),
+    ),
+    Fault(
+        "a link to itself",
+        "derive loop",
+        message_of(ErrorKind.FILE_UNREADABLE),
+        prepare=lambda here: (here / "loop").symlink_to("loop"),
+    ),
     *(
-        Fault(f"{call} on the way", "derive asks.mac", "Maxima asks a question", prepare=holding("asks.mac", text))
+        Fault(
+            f"{call} on the way", "derive asks.mac", message_of(ErrorKind.QUESTION), prepare=holding("asks.mac", text)
+        )
         for call, text in (
             ("break()", "x : 1$ break()$"),
             ("break(x)", 'break("why", x)$'),
@@ -219,7 +290,7 @@ SCENES = [
         Fault(
             f"{name} defined anew",
             "derive anew.mac",
-            f"anew.mac:{line}: {name} is a function of {whose}",
+            message_of(None, f"anew.mac:{line}", name, whose),
             prepare=holding("anew.mac", PARTICLE + text),
         )
         for name, line, whose, text in (
@@ -234,7 +305,7 @@ SCENES = [
         Fault(
             f"{entry} that is no text",
             "derive titled.mac",
-            f"'{entry}' must be text",
+            message_of(None, entry),
             prepare=holding(
                 "titled.mac",
                 PARTICLE.replace("kinetic_energy =", f"{entry} = u, kinetic_energy =").replace(
@@ -247,7 +318,7 @@ SCENES = [
     Fault(
         "a mass that no double holds",
         "simulate mass.mac --until 1",
-        "exceeds the range of double precision",
+        message_of(ErrorKind.NUMBER_TOO_LARGE),
         prepare=holding("mass.mac", PARTICLE.replace("m = 2", "m = 10^1000")),
     ),
     Fault(
@@ -269,7 +340,7 @@ SCENES = [
     Fault(
         "a name of 100000 letters",
         "derive long.mac",
-        "long.mac:18: the name",
+        message_of(ErrorKind.NAME_TOO_LONG, "long.mac:18"),
         prepare=holding("long.mac", f"{PARTICLE}x{'a' * 100_000} : 1$"),
     ),
     Fault(
@@ -282,45 +353,45 @@ SCENES = [
     Fault(
         "1001 scenes",
         "derive many.mac",
-        "describes 1001 scenes",
+        message_of(ErrorKind.TOO_MANY_SCENES, "1001"),
         prepare=holding("many.mac", PARTICLE + "".join(f"s{k} : rise$ " for k in range(1000))),
     ),
     Fault(
         "a file of 70 MiB",
         "derive large.mac",
-        "is larger than 64 MiB",
+        message_of(ErrorKind.FILE_TOO_LARGE, "64 MiB"),
         prepare=holding("large.mac", b" " * (70 * 2**20)),
     ),
     Fault(
         "standard input without an end",
         "derive -",
-        "standard input: the file is larger than 64 MiB",
+        message_of(ErrorKind.FILE_TOO_LARGE, "standard input"),
         shell='"$@" < /dev/zero',
     ),
-    Fault("an empty file", "derive empty.mac", "describes no system", prepare=holding("empty.mac", "")),
+    Fault("an empty file", "derive empty.mac", message_of(ErrorKind.NOTHING_WRITTEN), prepare=holding("empty.mac", "")),
     Fault(
         "a file that ends Maxima",
         "derive quit.mac",
-        "Maxima ended before the file did",
+        message_of(ErrorKind.ENDED_EARLY),
         prepare=holding("quit.mac", "quit()$"),
     ),
     Fault(
         "a Maxima that is killed",
         "derive kill.mac",
-        "Maxima was ended by SIGKILL",
+        message_of(ErrorKind.KILLED, "SIGKILL"),
         MACHINE_AT_FAULT,
         prepare=holding("kill.mac", f'{SHELL} in_a_shell("kill -9 $PPID")$'),
     ),
     Fault(
         "a file that never ends",
         "derive loop.mac --time-limit 1",
-        "--time-limit",
+        message_of(None, "--time-limit"),
         prepare=holding("loop.mac", "for i do 1$"),
     ),
     Fault(
         "an error without words",
         "derive error.mac",
-        "error.mac:1: ",
+        message_of(None, "error.mac:1"),
         prepare=holding("error.mac", 'error("")$'),
         long=True,
     ),
@@ -343,12 +414,16 @@ SCENES = [
 
 ENVIRONMENTS = [
     Fault(
-        "no Maxima", "derive scene.mac --trust", "Maxima is not installed", MACHINE_AT_FAULT, environment=NO_PROGRAMS
+        "no Maxima",
+        "derive scene.mac --trust",
+        message_of(ErrorKind.MAXIMA_MISSING),
+        MACHINE_AT_FAULT,
+        environment=NO_PROGRAMS,
     ),
     Fault(
         "a Maxima that must not be executed",
         "derive scene.mac --trust",
-        "is not installed",
+        message_of(ErrorKind.MAXIMA_MISSING),
         MACHINE_AT_FAULT,
         maxima("#!/bin/sh\n", 0o644),
         {"PATH": "{here}/bin"},
@@ -356,7 +431,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that is none",
         "derive scene.mac",
-        "Maxima does not start",
+        message_of(ErrorKind.NOT_MAXIMA),
         MACHINE_AT_FAULT,
         maxima("not a program"),
         OTHER_MAXIMA,
@@ -364,7 +439,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that says nothing",
         "derive scene.mac",
-        "Maxima does not start: exit status 0",
+        message_of(ErrorKind.NOT_MAXIMA, "0"),
         MACHINE_AT_FAULT,
         maxima("#!/bin/sh\nexit 0\n"),
         OTHER_MAXIMA,
@@ -372,7 +447,7 @@ ENVIRONMENTS = [
     Fault(
         "a Maxima that fails",
         "derive scene.mac",
-        "Maxima does not start: exit status 7",
+        message_of(ErrorKind.NOT_MAXIMA, "7"),
         MACHINE_AT_FAULT,
         maxima("#!/bin/sh\necho garbage; exit 7\n"),
         OTHER_MAXIMA,
@@ -380,12 +455,22 @@ ENVIRONMENTS = [
     *(
         Fault(name, "derive scene.mac", says, MACHINE_AT_FAULT, leaving(what, command), OTHER_MAXIMA)
         for name, what, command, says in (
-            ("a truncated outcome", "outcome", "printf 'FINI' > {name}", "incomplete: its outcome"),
-            ("an alien outcome", "outcome", "seq 100 > {name}", "incomplete: its outcome"),
-            ("an outcome in bytes", "outcome", "head -c 9999 /dev/urandom > {name}", "incomplete: its outcome"),
-            ("an outcome that is a directory", "outcome", "mkdir {name}", "Maxima does not start"),
-            ("an outcome that is a pipe", "outcome", "mkfifo {name}", "Maxima does not start"),
-            ("an outcome that is a link", "outcome", "ln -s /etc/passwd {name}", "Maxima does not start"),
+            (
+                "a truncated outcome",
+                "outcome",
+                "printf 'FINI' > {name}",
+                message_of(ErrorKind.OUTPUT_TRUNCATED, "outcome"),
+            ),
+            ("an alien outcome", "outcome", "seq 100 > {name}", message_of(ErrorKind.OUTPUT_TRUNCATED, "outcome")),
+            (
+                "an outcome in bytes",
+                "outcome",
+                "head -c 9999 /dev/urandom > {name}",
+                message_of(ErrorKind.OUTPUT_TRUNCATED, "outcome"),
+            ),
+            ("an outcome that is a directory", "outcome", "mkdir {name}", message_of(ErrorKind.NOT_MAXIMA)),
+            ("an outcome that is a pipe", "outcome", "mkfifo {name}", message_of(ErrorKind.NOT_MAXIMA)),
+            ("an outcome that is a link", "outcome", "ln -s /etc/passwd {name}", message_of(ErrorKind.NOT_MAXIMA)),
         )
     ),
     *(
@@ -393,10 +478,15 @@ ENVIRONMENTS = [
             name, "derive scene.mac --trust", says, status, leaving("document", f"{command}; {FINISHED}"), OTHER_MAXIMA
         )
         for name, command, says, status in (
-            ("no document", "true", "describes no system", 2),
-            ("a document that is a directory", "mkdir {name}", "describes no system", 2),
-            ("a document that is a link", "ln -s /etc/passwd {name}", "describes no system", 2),
-            ("a truncated document", "printf '{{\"format\"' > {name}", "incomplete: its document", MACHINE_AT_FAULT),
+            ("no document", "true", message_of(ErrorKind.NOTHING_WRITTEN), 2),
+            ("a document that is a directory", "mkdir {name}", message_of(ErrorKind.NOTHING_WRITTEN), 2),
+            ("a document that is a link", "ln -s /etc/passwd {name}", message_of(ErrorKind.NOTHING_WRITTEN), 2),
+            (
+                "a truncated document",
+                "printf '{{\"format\"' > {name}",
+                message_of(ErrorKind.OUTPUT_TRUNCATED, "document"),
+                MACHINE_AT_FAULT,
+            ),
             ("an alien document", "echo hello > {name}", "", 2),
             ("a document of another kind", "echo '{{}}' > {name}", "", 2),
         )
@@ -408,8 +498,14 @@ ENVIRONMENTS = [
         0,
         environment={"TMPDIR": "{here}/scene.mac"},
     ),
-    Fault("standard output full", "derive scene.mac", "No space left", MACHINE_AT_FAULT, shell='"$@" > /dev/full'),
-    Fault("a full device", "derive scene.mac --json /dev/full", "No space left", MACHINE_AT_FAULT),
+    Fault(
+        "standard output full",
+        "derive scene.mac",
+        message_of(None, os.strerror(errno.ENOSPC)),
+        MACHINE_AT_FAULT,
+        shell='"$@" > /dev/full',
+    ),
+    Fault("a full device", "derive scene.mac --json /dev/full", message_of(ErrorKind.DISK_FULL), MACHINE_AT_FAULT),
     Fault("no standard output", "derive scene.mac --json out.json", "", 0, shell='"$@" >&-', long=True),
     Fault("no standard error", DERIVE, "", 0, shell='"$@" 2>&-', long=True),
     Fault("no reader", "derive scene.mac", "", 141, shell='"$@" | true; exit ${PIPESTATUS[0]}'),
@@ -422,7 +518,7 @@ ENVIRONMENTS = [
     Fault(
         "no bubblewrap where it is demanded",
         "derive scene.mac --sandbox",
-        "bubblewrap is missing",
+        message_of(ErrorKind.NO_SANDBOX),
         MACHINE_AT_FAULT,
         environment=NO_PROGRAMS,
     ),
@@ -430,17 +526,17 @@ ENVIRONMENTS = [
         Fault(f"CC={named}", "effects scene.mac", says, status, environment={"CC": named}, long=index > 0)
         for index, (named, says, status) in enumerate(
             (
-                ("'", "the C compiler cannot be run", MACHINE_AT_FAULT),
-                ("true", "made no library", MACHINE_AT_FAULT),
-                (" ", "the C compiler cannot be run", MACHINE_AT_FAULT),
-                ("false", "cannot compile", 2),
+                ("'", message_of(ErrorKind.COMPILER_UNUSABLE), MACHINE_AT_FAULT),
+                ("true", message_of(ErrorKind.COMPILER_UNUSABLE), MACHINE_AT_FAULT),
+                (" ", message_of(ErrorKind.COMPILER_UNUSABLE), MACHINE_AT_FAULT),
+                ("false", message_of(ErrorKind.COMPILER_REFUSED), 2),
             )
         )
     ),
     Fault(
         "a compiler that hangs",
         "effects scene.mac --time-limit 30",
-        "ran out of them while compiling C",
+        message_of(None, "--time-limit"),
         prepare=executable("hangs", "#!/bin/sh\nexec sleep 1000\n"),
         environment={"CC": "{here}/hangs"},
         long=True,
@@ -448,14 +544,14 @@ ENVIRONMENTS = [
     Fault(
         "settings of Matplotlib that are not UTF-8",
         "simulate scene.mac --until 1 --plot out.svg",
-        "not UTF-8",
+        message_of(None, "matplotlibrc"),
         prepare=holding("matplotlibrc", b"\xff\xfe"),
         shell='"$@"',  # Matplotlib reads them once a process
     ),
     Fault(
         "a Python without docstrings",
         "check scene.mac",
-        "no docstrings",
+        message_of(None, "docstrings"),
         MACHINE_AT_FAULT,
         environment={"PYTHONOPTIMIZE": "2"},
     ),
@@ -470,65 +566,78 @@ ENVIRONMENTS = [
 ]
 
 WORK = [
-    Fault("a billion samples", "simulate scene.mac --until 1 --samples 1000000000", "MiB of memory"),
-    Fault("more samples than a disk holds", f"simulate scene.mac --until 1 --samples {10**15} -o x.csv", "MiB of disk"),
-    Fault("a billion orders", "series scene.mac --order 1000000000", "MiB of memory", long=True),
-    Fault("a billion digits", "series scene.mac --order 4 --digits 1000000000", "MiB of memory", long=True),
+    Fault(
+        "a billion samples", "simulate scene.mac --until 1 --samples 1000000000", message_of(ErrorKind.TOO_MANY_SAMPLES)
+    ),
+    Fault(
+        "more samples than a disk holds",
+        f"simulate scene.mac --until 1 --samples {10**15} -o x.csv",
+        message_of(ErrorKind.DISK_TOO_SMALL),
+    ),
+    Fault("a billion orders", "series scene.mac --order 1000000000", message_of(ErrorKind.MEMORY_TOO_SMALL), long=True),
+    Fault(
+        "a billion digits",
+        "series scene.mac --order 4 --digits 1000000000",
+        message_of(ErrorKind.MEMORY_TOO_SMALL),
+        long=True,
+    ),
     Fault(
         "a thousand digits",
         "simulate swing.mac --until 10 --precision 1000 --time-limit 8",
-        "longer than 8 s",
+        message_of(None, "--time-limit"),
         prepare=holding("swing.mac", SWING),
         long=True,
     ),
     Fault(
         "an order of a million",
         "series scene.mac --order 1000000 --precision 50 --time-limit 8",
-        "longer than 8 s",
+        message_of(None, "--time-limit"),
         long=True,
     ),
-    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", "tolerances"),
-    Fault("a tolerance of zero", "simulate scene.mac --until 1 --tol 0", "tolerances", long=True),
+    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", message_of(ErrorKind.TOLERANCE_UNHELD)),
+    Fault(
+        "a tolerance of zero", "simulate scene.mac --until 1 --tol 0", message_of(ErrorKind.TOLERANCE_UNHELD), long=True
+    ),
     *(
         Fault(f"a step of {text}", f"simulate scene.mac --until 1 --max-step {text}", says)
         for text, says in (
-            ("nan", "invalid step length"),
-            ("inf", "invalid step length"),
-            ("1e-300", "steps to its end"),
+            ("nan", message_of(ErrorKind.NOT_A_STEP)),
+            ("inf", message_of(ErrorKind.NOT_A_STEP)),
+            ("1e-300", message_of(ErrorKind.TOO_MANY_STEPS)),
         )
     ),
     *(
         Fault(
             f"a very late end, by {engine}",
             f"simulate swing.mac --until 99999999999999999999 --engine {engine}",
-            "steps to its end",
+            message_of(ErrorKind.TOO_MANY_STEPS),
             prepare=holding("swing.mac", SWING),
             long=engine == "robust",
         )
         for engine in ("taylor", "runge-kutta", "robust")
     ),
-    Fault("an end before the start", "simulate scene.mac --until -1", "not after the initial time", long=True),
+    Fault("an end before the start", "simulate scene.mac --until -1", message_of(ErrorKind.NOT_AFTER_START), long=True),
     Fault("5000 digits", "series scene.mac --order 4 --precision 5000", "", 0, long=True),
     Fault("one digit", "simulate scene.mac --until 1 --precision 1 --final", "", 0, long=True),
-    Fault("an unused setting", "derive scene.mac --set k=1", "k", long=True),
+    Fault("an unused setting", "derive scene.mac --set k=1", message_of(None, "k"), long=True),
     Fault(
         "a law that ends within the time span",
         "simulate law.mac --until 1",
-        "cannot be continued beyond t = 0.5, where",
+        message_of(ErrorKind.NO_WAY_ON, "0.5"),
         prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = (1/2-t)^(5/2)]")),
         long=True,
     ),
     Fault(
         "a law that swings faster and faster",
         "simulate law.mac --until 1 --time-limit 20 --final",
-        "ran out of them while following the motion",
+        message_of(None, "--time-limit"),
         prepare=holding("law.mac", PARTICLE.replace("u = t]", "u = sin(1/(t-1/2))]")),
         long=True,
     ),
     Fault(
         "masses of opposite sign that cancel",
         "simulate negative.mac --until 1",
-        "masses of opposite sign cancel",
+        message_of(None, "lambda1"),
         prepare=holding(
             "negative.mac", PARTICLE.replace("dot(x)^2 + dot(z)^2", "dot(x)^2 - dot(z)^2").replace("z - u", "z - x - u")
         ),
@@ -537,7 +646,7 @@ WORK = [
     Fault(
         "a motion that takes too long",
         "simulate swing.mac --until 1e9 --time-limit 20 --final",
-        "ran out of them while following the motion",
+        message_of(None, "--time-limit"),
         prepare=holding("swing.mac", SWING),
         long=True,
     ),
