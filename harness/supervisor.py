@@ -211,7 +211,7 @@ def _ending_of(status: int) -> Ending:
     limit, what = _left_word()
     during = f" while {what}" if what else ""
     if -status == signal.SIGALRM:
-        message = f"this took longer than {limit} s, and ran out of them{during}. Ask for less, or raise --time-limit."
+        message = f"the command took longer than {limit} s{during}. Reduce the problem, or raise --time-limit."
         return Ending(OUT_OF_TIME, message)
     if -status in QUIET_ENDS:
         return Ending(SIGNALLED - status)
