@@ -10,6 +10,7 @@ import fcntl
 import os
 import shutil
 import stat
+import time
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -26,7 +27,8 @@ QUIET = ("--init=/dev/null", "--very-quiet")
 
 MOST_IMAGES = 8  # images, of several versions or installations: a gigabyte
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
-MAKING = Limits(seconds=100.0, sandbox=Sandbox.TRUSTED)  # only the library is run
+ASKED_AGAIN = 3600.0  # seconds after which a Maxima that made none tries again: the machine may have been busy
+MAKING = Limits(seconds=300.0, sandbox=Sandbox.TRUSTED)  # only the library is run
 PRELOAD = Path(__file__).with_name("preload.lisp")
 JOBS = (Path(__file__).with_name("headless.lisp"),)  # what runs are made of
 
@@ -57,9 +59,10 @@ def preloaded_image(maxima: str, library: Path, environment: frozenset[tuple[str
         if asked not in _known:
             _known[asked] = _own_folder() / f"{_name(*asked)}.image"
         image = _known[asked]
+        _remove_old_failure(image)
         if not image.exists():
             _make_alone(image, *asked)
-        return image if image.stat().st_size else None  # an empty file: this Maxima cannot make one
+        return image if image.stat().st_size else None  # an empty file: this Maxima made none
     return None
 
 
@@ -110,6 +113,13 @@ def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -
     library_files = sorted(file for file in library.rglob("*") if file.suffix in (".mac", ".lisp"))
     texts = [Path(__file__), PRELOAD, *JOBS, *library_files]
     return sha256(b"\0".join([repr(known).encode(), *(each.read_bytes() for each in texts)])).hexdigest()
+
+
+def _remove_old_failure(image: Path) -> None:
+    with suppress(FileNotFoundError):
+        found = image.stat()
+        if not found.st_size and time.time() - found.st_mtime > ASKED_AGAIN:
+            image.unlink()
 
 
 def _make_alone(image: Path, maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> None:

@@ -3,6 +3,7 @@
 import fcntl
 import os
 import shutil
+import time
 from pathlib import Path
 
 import pytest
@@ -105,7 +106,7 @@ def test_maxima_that_cannot_save_itself_is_asked_once(cache, tmp_path):
     assert (tmp_path / "asked").read_text() == "asked\n"
 
 
-def test_maxima_that_takes_too_long_to_save_itself_is_asked_once(cache, tmp_path, monkeypatch):
+def test_maxima_that_takes_too_long_to_save_itself_is_asked_again_after_an_hour(cache, tmp_path, monkeypatch):
     slow, started, run = tmp_path / "maxima", [], preloaded.run_process
     slow.write_text("#!/bin/sh\nexec sleep 1000\n")
     slow.chmod(0o755)
@@ -114,6 +115,10 @@ def test_maxima_that_takes_too_long_to_save_itself_is_asked_once(cache, tmp_path
     for _ in range(2):
         assert preloaded.preloaded_image(str(slow), maxima.LIBRARY, frozenset()) is None
     assert len(started) == 1
+    (record,) = cache.glob("*.image")
+    os.utime(record, (time.time() - 3601,) * 2)
+    assert preloaded.preloaded_image(str(slow), maxima.LIBRARY, frozenset()) is None
+    assert len(started) == 2
 
 
 def test_while_one_process_makes_an_image_others_run_without(made, tmp_path):
