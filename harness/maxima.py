@@ -494,7 +494,7 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
-    detail = visible_line(" ".join(message.split())) or "the question is missing"
+    detail = visible_line(" ".join(message.split())) or "it gives no message"
     return Ending(ENDINGS[kind], place, detail, refusal or None)
 
 

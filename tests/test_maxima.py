@@ -98,7 +98,7 @@ def test_an_error_is_caught_by_the_file_itself(write_scene):
 
 def test_a_lisp_error_without_a_message_ended_in_an_empty_sentence(write_scene):
     error = failure_of(write_scene('?error("")$'))
-    assert (error.kind, error.detail) == (ErrorKind.LISP_ERROR, "it does not say which")
+    assert (error.kind, error.detail) == (ErrorKind.LISP_ERROR, "it gives no message")
 
 
 def test_a_refusal_has_its_id_with_its_place(write_scene):

@@ -76,7 +76,7 @@ def derive(
     return 0
 
 
-@holonom.command(examples=["check examples/pendulum.mac", "check examples/pendulum.mac --result lin.json"])
+@holonom.command(examples=["check examples/pendulum.mac", "check examples/arm.mac --json -"])
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
 @limits_closed_forms

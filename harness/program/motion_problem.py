@@ -56,7 +56,7 @@ class Origin(StrEnum):
 
     GIVEN = "given"
     NEAR = "near"
-    CONTINUED = "followed"
+    CONTINUED = "continued"
     ONLY = "only"
 
 

@@ -5,7 +5,7 @@ import pytest
 from holonom.mathjson import Tree
 from holonom.typeset.latex import latex_marked, latex_tree, marked
 
-Q_S, U_RHO = ["Subscript", "q", "s"], ["Subscript", "u", "rho"]
+F_BETA, Q_S, U_RHO = ["Subscript", "f", "beta"], ["Subscript", "q", "s"], ["Subscript", "u", "rho"]
 
 
 def marks(tree: Tree) -> list[Tree]:
@@ -14,17 +14,24 @@ def marks(tree: Tree) -> list[Tree]:
     return [tree[2]] if tree[0] == "Marked" else [mark for part in tree[1:] for mark in marks(part)]
 
 
+def twice_by_controls(index: str) -> list[Tree]:
+    """The second derivative by u_rho and another control, and that control's time derivative."""
+    other = ["Subscript", "u", index]
+    return [["Partial", F_BETA, U_RHO, other], ["Dot", other]]
+
+
 def test_the_misprints_of_the_paper_are_marked_where_they_stand(printed_equations):
     misprints = [e for e in printed_equations if not e.agrees]
     slips = [
         (marks(marked(e.printed_tree, e.corrected_tree, "red")), marks(marked(e.corrected_tree, e.printed_tree, "red")))
         for e in misprints
     ]
-    mixed_term = ["Multiply", ["Partial", ["Subscript", "f", "beta"], Q_S, U_RHO], ["Dot", Q_S], ["Dot", U_RHO]]
+    alpha, sigma = twice_by_controls("alpha"), twice_by_controls("sigma")
+    mixed_term = ["Multiply", ["Partial", F_BETA, Q_S, U_RHO], ["Dot", Q_S], ["Dot", U_RHO]]
     acceleration = ([["Ddot", "u"]], [["Dot", "u"]])
-    factor = ([mixed_term, ["Dot", U_RHO]], [2, ["Ddot", U_RHO]])
+    factor = ([mixed_term, *alpha, ["Dot", U_RHO]], [2, *sigma, ["Ddot", U_RHO]])
     assert slips == [
-        ([["Dot", Q_S], ["Dot", U_RHO]], [["Ddot", Q_S], ["Ddot", U_RHO]]),  # (7)
+        ([*alpha, ["Dot", Q_S], ["Dot", U_RHO]], [*sigma, ["Ddot", Q_S], ["Ddot", U_RHO]]),  # (7)
         factor,  # (8)
         factor,  # (10)
         (["u"], [2]),  # equation of motion of q2
