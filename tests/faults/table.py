@@ -574,11 +574,16 @@ WORK = [
         f"simulate scene.mac --until 1 --samples {10**15} -o x.csv",
         message_of(ErrorKind.DISK_TOO_SMALL),
     ),
-    Fault("a billion orders", "series scene.mac --order 1000000000", message_of(ErrorKind.MEMORY_TOO_SMALL), long=True),
+    Fault(
+        "a billion orders",
+        "series scene.mac --order 1000000000",
+        message_of(ErrorKind.REFUSED, "motion_series", "1000000000", "series_memory"),
+        long=True,
+    ),
     Fault(
         "a billion digits",
         "series scene.mac --order 4 --digits 1000000000",
-        message_of(ErrorKind.MEMORY_TOO_SMALL),
+        message_of(ErrorKind.REFUSED, "motion_series", "series_memory"),
         long=True,
     ),
     Fault(
