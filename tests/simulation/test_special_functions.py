@@ -142,7 +142,9 @@ def test_the_series_are_the_functions_own(write_scene: WRITE):
 
 @pytest.mark.long
 def test_the_series_of_a_gamma_function_to_order_24(write_scene: WRITE):
-    series = compute_series(write_scene(pushed(law="gamma(1 + t)")), SeriesRequest(order=24, digits=30), Limits())
+    series = compute_series(
+        write_scene(pushed(law="gamma(1 + t)")), SeriesRequest(order=24, digits=30), Limits(seconds=900)
+    )
     with mpmath.workdps(40):
         for found, true in zip(series.coordinates["y"], mpmath.taylor(mpmath.gamma, 1, 24), strict=True):
             assert abs(mpmath.mpf(found) / true - 1) < 1e-28
