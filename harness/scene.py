@@ -608,7 +608,7 @@ class Scene:
         from .stability.start import started_at_equilibrium
 
         other = self.with_settings()
-        other._source = started_at_equilibrium(self._source, self._request(), self.limits, name)
+        other._source = started_at_equilibrium(self._source, self.equilibria(), name)
         other._derived = Derivations(other._source)
         return other
 

@@ -17,7 +17,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport, EquationVerdict
-    from ..description import Description
+    from ..crosscheck.results import Content
     from ..record import Record
     from ..source import Source
 
@@ -114,6 +114,7 @@ def check(
 
     if result_files and len(scenes) > 1:
         raise click.UsageError("--result needs one SCENE")
+    results = _read_results(result_files)
     seed = seed or fresh_seed()
     sources = [Source(scene, limits) for scene in scenes]
     with beside(_verify_motions, settings, seed) as child:
@@ -138,18 +139,23 @@ def check(
         (as_given(source.file), report.with_verdicts(verdicts))
         for source, report, verdicts in zip(sources, checked, motions, strict=True)
     ]
-    if result_files:
-        reports = [(reports[0][0], reports[0][1].with_verdicts(_verify_results(described[0], result_files)))]
+    if results:
+        from ..crosscheck.results import verify_result
+
+        verdicts = [verify_result(described[0], each) for each in results]
+        reports = [(reports[0][0], reports[0][1].with_verdicts(verdicts))]
     documents = [_report_document(scene, report) for scene, report in reports]
     present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
     unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
-def _verify_results(description: "Description", files: Sequence[Path]) -> list["EquationVerdict"]:
-    from ..crosscheck.results import read_result, verify_result
+def _read_results(files: Sequence[Path]) -> list["Content"]:
+    if not files:
+        return []
+    from ..crosscheck.results import read_result
 
-    return [verify_result(description, read_result(file)) for file in files]
+    return [read_result(file) for file in files]
 
 
 def _verify_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:

@@ -122,9 +122,11 @@ def simulate(
     wanted = SimulationRequest(**options)
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
     if equilibrium is not None:
+        from ..scene import Scene
         from ..stability.start import started_at_equilibrium
 
-        source = started_at_equilibrium(source, request, limits, equilibrium)
+        found = Scene(scene_file, request.scene, request.settings, limits).equilibria()
+        source = started_at_equilibrium(source, found, equilibrium)
     imports = partial(_import_readers, click.get_current_context().obj is OWN_PROCESS)
     with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))

@@ -181,9 +181,9 @@ class _Check:
                 yield self._verify(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
             else:
                 yield _rejected(place, item, "no such equation belongs here; or it is there twice, or out of order")
-        is_recorded = {(each.id, each.number, each.name) for each in part.equations}
+        recorded = {(each.id, each.number, each.name) for each in part.equations}
         for item in items:
-            if item not in is_recorded:
+            if item not in recorded:
                 yield _rejected(place, item, "the record does not hold this equation", is_recorded=False)
 
     def _verify(

@@ -111,7 +111,7 @@ def verify_series(
             result = each.missing
         else:
             motion = DescribedMotion(description, scenes[each.scene])
-            series, digits = each.series, _digits(each.series)
+            series, digits = each.series, digits_of(each.series.arithmetic, LOST)
             result = _verify(partial(_compared, motion, series, corrections.get(each.scene)), digits)
         verdicts.append(ProgramVerdict(each.scene, SERIES, result))
     return verdicts
@@ -144,13 +144,26 @@ def verify_servo(
             motion = DescribedMotion(description, scene)
             own = series.get(each.scene)
             compared = partial(_values_of_servo, motion, problem, own)
-            result = _verify(compared, DIGITS if own is None else _digits(own))
+            result = _verify(compared, DIGITS if own is None else digits_of(own.arithmetic, LOST))
             verdicts.append(ProgramVerdict(each.scene, SERVO, result))
     return verdicts
 
 
-def _digits(series: MotionSeries) -> int:
-    return DIGITS if series.arithmetic == EXACT else min(DIGITS, int(series.arithmetic[9:-1]) - LOST)
+def digits_of(arithmetic: str, lost: int) -> int:
+    """Return the digits in which a series has to satisfy the equations.
+
+    Parameters
+    ----------
+    arithmetic : str
+        ``exact``, or ``bigfloat(N)`` with N digits.
+    lost : int
+        Digits that a rounded coefficient may lose.
+
+    Returns
+    -------
+    int
+    """
+    return DIGITS if arithmetic == EXACT else min(DIGITS, int(arithmetic[9:-1]) - lost)
 
 
 def _verify(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:

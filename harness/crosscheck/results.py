@@ -21,11 +21,10 @@ from ..number_texts import number, numbers
 from ..program.differentiation import derivative_name
 from .compared_values import differing
 from .described_motion import DescribedMotion
-from .digits import DIGITS
 from .irregular_point import IrregularPoint
 from .law import Law
 from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
-from .motion_series import values_of_equations
+from .motion_series import digits_of, values_of_equations
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .taylor import Polynomial, Taylor
@@ -92,8 +91,7 @@ def _verify_equilibria(description: Description, content: Content) -> CheckResul
 
 def _verify_derivatives(description: Description, content: Content) -> CheckResult:
     scene = next(each for each in description.scenes if each.name == content["scene"])
-    inside = content["arithmetic"].partition("(")[2].rstrip(")")
-    digits = min(DIGITS, int(inside) - LOST) if inside else DIGITS
+    digits = digits_of(content["arithmetic"], LOST)
     if not content["sensitivities"]:
         return CheckResult(Verdict.NOTHING, None, None, "the series has no derivatives")
     try:

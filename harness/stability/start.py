@@ -4,13 +4,8 @@ from collections.abc import Mapping
 
 from ..description import Description
 from ..maxima import NO_SETTINGS
-from ..program.motion_problem import motion_problem
-from ..program.request import Request
-from ..sandbox import Limits
 from ..source import Source
-from .equilibria import find_equilibria
-from .linear_equations import linear_equations
-from .request import EquilibriaRequest
+from .equilibria import Equilibria
 
 
 class StartedSource(Source):
@@ -45,19 +40,17 @@ class StartedSource(Source):
         return self._source.description(settings).with_initial_state(self._scene, self._state)
 
 
-def started_at_equilibrium(source: Source, request: Request, limits: Limits, name: str) -> Source:
+def started_at_equilibrium(source: Source, found: Equilibria, name: str) -> Source:
     """Return the source with a scene that starts at rest in an equilibrium.
 
     Parameters
     ----------
     source : Source
         The scene file.
-    request : Request
-        Scene and settings.
-    limits : Limits
-        Limits of each run of Maxima.
+    found : Equilibria
+        Equilibria of the scene, for the initial values of the controls.
     name : str
-        Name of the equilibrium, as `holonom equilibria` lists it for the initial values of the controls.
+        Name of one of them.
 
     Returns
     -------
@@ -66,9 +59,8 @@ def started_at_equilibrium(source: Source, request: Request, limits: Limits, nam
     Raises
     ------
     HolonomError
-        As `find_equilibria`, or there is no equilibrium of that name.
+        There is no equilibrium of that name.
     """
-    problem, asked = motion_problem(source, request, limits), EquilibriaRequest()
-    found = find_equilibria(problem, linear_equations(source, request), {}, asked.starts, asked.seed)[name]
-    at_rest = dict.fromkeys(problem.state, 0.0)
-    return StartedSource(source, problem.scene, at_rest | dict(found.coordinates))
+    coordinates = found[name].coordinates
+    at_rest = {f"dot({q})": 0.0 for q in coordinates}
+    return StartedSource(source, found.scene, {**coordinates, **at_rest})

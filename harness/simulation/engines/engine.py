@@ -20,10 +20,8 @@ from ..request import EngineName, SimulationRequest
 if TYPE_CHECKING:
     from ..mode import Mode
 
-ESTIMATED_AFTER, MOST_STEPS = (
-    1_000,
-    1e11,
-)  # steps: after which the remaining ones are estimated, and the most that are taken
+ESTIMATED_AFTER = 1_000  # steps after which the remaining ones are estimated
+MOST_STEPS = 1e11  # that are taken
 
 
 def require_reach(steps: int, done: Any, left: Any) -> None:
