@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 from click.testing import CliRunner
 from confinement import without_notice
 from particle import PARTICLE
+from refusing import message_of
 
 from holonom.cli import holonom as cli
 from holonom.cli import run
@@ -129,24 +131,24 @@ def test_bad_arguments_leave_with_two(arguments, holonom_here):
 
 
 def test_bad_input_is_one_sentence_and_writes_nothing(write_scene, tmp_path):
-    scene = write_scene('x : 1$\nerror("holonomic_system: the mass m is not declared")$')
+    scene = write_scene('x : 1$\nerror("holonomic_system: lost")$')
     done = holonom("derive", scene, "--json", tmp_path / "record.json")
     assert done.returncode == 2
     assert done.stdout == ""
-    assert done.stderr == f"holonom: error: {scene}:2: holonomic_system: the mass m is not declared.\n"
+    assert done.stderr == f"holonom: error: {scene}:2: holonomic_system: lost.\n"
     assert os.listdir(tmp_path) == [scene.name]
 
 
 def test_verbose_shows_how_to_repeat_the_run(write_scene):
     done = holonom("--verbose", "derive", write_scene('print("on the way")$ error("lost")$'))
     assert "on the way" in done.stderr
-    assert "repeat it with: maxima" in done.stderr
+    assert "maxima --" in done.stderr
 
 
 def test_an_output_that_cannot_be_written(particle_scene, tmp_path, holonom_here):
     done = holonom_here("derive", particle_scene, "--json", tmp_path / "nowhere" / "record.json")
     assert done.returncode == 2
-    assert "cannot be written" in done.stderr
+    assert re.search(message_of(ErrorKind.UNWRITABLE, "record.json"), done.stderr)
 
 
 def test_a_reader_who_leaves_early_is_no_error(particle_scene):
@@ -158,8 +160,8 @@ def test_a_reader_who_leaves_early_is_no_error(particle_scene):
 @pytest.mark.parametrize(
     ("arguments", "meant"),
     [
-        (["simulat", "scene.mac"], "Did you mean simulate?"),
-        (["derive", "examples/pendulm.mac"], "but there is examples/pendulum.mac"),
+        (["simulat", "scene.mac"], "simulate"),
+        (["derive", "examples/pendulm.mac"], "examples/pendulum.mac"),
         (["series", "examples/pendulum.mac", "--ordr", "3"], "--order"),
     ],
 )
@@ -286,7 +288,7 @@ def test_the_scene_file_s_closed_form_size_had_no_effect(write_scene, holonom_he
     scene.write_text(PARTICLE + "closed_form_size : 0$\n")
     refused = holonom_here("derive", scene)
     assert refused.returncode == 2
-    assert "closed_form_size must be a positive integer; it is 0" in refused.stderr
+    assert re.search(message_of(ErrorKind.REFUSED, "closed_form_size", "0"), refused.stderr)
 
 
 def test_a_law_that_sympy_contradicts_had_exit_status_0(particle_scene, monkeypatch):

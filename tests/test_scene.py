@@ -12,7 +12,7 @@ import sympy
 from refusing import failing, refused
 
 import holonom
-from holonom.failures import ErrorKind
+from holonom.failures import ErrorKind, HolonomError
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 OSCILLATOR = """
@@ -80,7 +80,7 @@ def test_simulating_leaves_blas_its_threads(released):
 def test_all_public_names_are_there():
     assert set(holonom.__all__) <= set(dir(holonom))
     assert all(getattr(holonom, name) for name in holonom.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+    with pytest.raises(AttributeError, match="nothing"):
         _ = holonom.nothing
 
 
@@ -88,7 +88,7 @@ def test_equations_are_found_by_number_and_by_id(pendulum):
     assert len(pendulum.equations["8"]) == 2
     [multipliers] = pendulum.equations["multipliers"]
     assert multipliers in list(pendulum.equations)
-    with pytest.raises(KeyError, match=r"\(8\) multipliers"):
+    with pytest.raises(KeyError, match="multipliers"):
         pendulum.equations["multiplicators"]
 
 
@@ -163,7 +163,7 @@ def test_the_motion_of_the_oscillator_is_the_cosine(released):
     assert motion.to_pandas()["x"].iloc[-1] == motion["x"][-1]
     assert motion.keys() == ("t", *motion.to_pandas())
     assert "energy error" in motion._repr_html_()
-    with pytest.raises(KeyError, match="the scene observes t, x"):
+    with pytest.raises(KeyError, match="t, x"):
         motion["y"]
 
 
@@ -281,14 +281,20 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
 
 
 def test_in_python_advice_names_arguments_and_no_options(released):
-    with pytest.raises(holonom.HolonomError, match="with until"):
+    with failing(ErrorKind.NOT_AFTER_START) as early:
         released.simulate(until=-1)
-    with pytest.raises(holonom.HolonomError, match="or raise limits"):
+    with failing(ErrorKind.TOO_LONG) as late:
         holonom.load(released.file, limits=holonom.Limits(seconds=1e-3)).free()
+    for error, argument, option in ((early, "until", "--until"), (late, "limits", "--time-limit")):
+        assert argument in str(error.value).split()[-1]
+        assert option in error.value.message()
+        assert option not in str(error.value)
 
 
 @pytest.mark.parametrize("asked", ["simulate", "effects", "program().lambdify"])
 def test_without_numpy_a_scene_says_which_extra_brings_it(asked, released):
     hidden = f"import sys; sys.modules['numpy'] = None; import holonom; holonom.load({str(released.file)!r}).{asked}()"
     done = subprocess.run([sys.executable, "-c", hidden], capture_output=True, text=True)
-    assert "HolonomError: this needs numpy, which is not installed; run `pip install 'holonom[motion]'`" in done.stderr
+    told = HolonomError(ErrorKind.EXTRA_MISSING, detail="")
+    assert f"HolonomError: {told.reason}numpy" in done.stderr
+    assert "holonom[motion]" in done.stderr

@@ -99,5 +99,5 @@ def test_a_start_that_leaves_a_value_open_is_refused(checked):
     state = equation(checked, "initial_state")
     short = {name: value for name, value in checked.scene.initial_state.items() if name != "dot(y)"}
     scene = dataclasses.replace(checked.scene, initial_state=short)
-    with pytest.raises(NotComparable, match="not complete"):
+    with pytest.raises(NotComparable):
         COMPARISONS["initial_state"](dataclasses.replace(checked, scene=scene), state.relations)

@@ -4,11 +4,12 @@ from itertools import product
 
 import numpy as np
 import pytest
+from refusing import failing
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import holonom
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 
 INCLINE = """
 system : holonomic_system(coordinates = [x, y], parameters = [m, g, alpha, mu],
@@ -78,9 +79,9 @@ def test_a_sliding_rod_is_followed_up_to_the_paradoxes_of_painleve_and_not_into_
         if there:
             assert np.isfinite(scene.simulate(until=0.001, samples=2)["lambda1"]).all()
         else:
-            with pytest.raises(HolonomError, match=r"beyond t = 0, where .*Painleve"):
+            with failing(ErrorKind.NO_WAY_ON, "t = 0", "Painleve"):
                 scene.simulate(until=0.001, samples=2)
-    with pytest.raises(HolonomError, match=r"beyond t = 0\.\d+, where"):
+    with failing(ErrorKind.NO_WAY_ON):
         of_text(ROD.replace("MU", str(mu)).replace("PHI", repr(last + 0.01))).simulate(until=1)
 
 
@@ -205,7 +206,7 @@ scene : holonomic_scene(system, observe = [trajectory, multipliers, a1 = ddot(q1
     )
     truth = solved(A, J, F, mu, v)
     if truth is None:
-        with pytest.raises(HolonomError, match="beyond t = 0, where"):
+        with failing(ErrorKind.NO_WAY_ON, "t = 0"):
             scene.simulate(until=1e-3, samples=2)
         return
     motion = scene.simulate(until=1e-3, samples=2)

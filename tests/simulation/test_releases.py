@@ -160,8 +160,9 @@ def test_who_follows_one_analytic_motion_refuses_released_joints():
     asked = (scene.rhs, scene.dae, scene.equilibria, scene.free, lambda: scene.linearize(at=0))
     sweep = holonom.sweep
     for ask in (*asked, lambda: scene.program().inputs, lambda: sweep(scene, grid={"c": (1, 2, 2)}, keep=["final"])):
-        with pytest.raises(HolonomError, match="t-c"):
+        with pytest.raises(HolonomError) as stopped:
             ask()
+        assert "t-c" in stopped.value.reason
 
 
 def test_check_verifies_the_motion_after_each_release():

@@ -157,9 +157,9 @@ def test_a_hand_over_is_reported_in_one_line_each():
 
 def test_the_taylor_engine_alone_stops_before_a_singular_configuration():
     """Truth: the rods lie in line for the first time where their angle is a right one, at t = 0.70845."""
-    with pytest.raises(HolonomError, match="nears a singular one") as refusal:
+    with failing(ErrorKind.NO_WAY_ON) as refusal:
         final(problem("linkage.mac"), engine=EngineName.TAYLOR)
-    assert refusal.value.kind is ErrorKind.NO_WAY_ON
+    assert refusal.value.case is Difficulty.SINGULAR_CONFIGURATION
 
 
 CROSS = """load("holonom.mac")$
@@ -173,8 +173,9 @@ def test_a_run_that_ended_in_a_singular_configuration_was_an_internal_error(writ
     report = final(cross)
     assert report.coordinates["x"] == pytest.approx(0, abs=1e-12)
     assert Difficulty.SINGULAR_CONFIGURATION in report.cases
-    with pytest.raises(HolonomError, match="nears a singular one"):
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
         final(cross, engine=EngineName.TAYLOR)
+    assert stopped.value.case is Difficulty.SINGULAR_CONFIGURATION
 
 
 LOST_LOGARITHM = """load("holonom.mac")$
@@ -249,8 +250,9 @@ def test_redundant_constraints_are_reported_and_followed():
 
 
 def test_a_precision_that_the_robust_engine_lacks_is_not_feigned():
-    with pytest.raises(HolonomError, match="nears a singular one"):
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
         final(problem("linkage.mac", digits=36), precision="quadruple")
+    assert stopped.value.case is Difficulty.SINGULAR_CONFIGURATION
 
 
 @pytest.mark.parametrize("scene", [("chain.mac", "swing_scene"), ("andrews.mac", None), ("pendulum.mac", None)])
@@ -402,8 +404,9 @@ particle : holonomic_system(coordinates = [x, z], controls = [u], kinetic_energy
 rise : holonomic_scene(particle, control_law = [u = 1/(1 - t)], initial_state = [x = 0, dot(x) = 1],
   time_span = [0, 2])$
 """)
-    with pytest.raises(HolonomError, match=r"beyond t = (1|0\.9999\d*), where"):
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
         final(motion_problem(scene, Request(), Limits()))
+    assert float(stopped.value.detail.split(",")[0]) == pytest.approx(1, abs=1e-4)
 
 
 def test_an_end_before_the_start_is_refused():

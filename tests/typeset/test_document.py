@@ -8,7 +8,9 @@ from pathlib import Path
 
 import pytest
 from confinement import without_notice
+from refusing import message_of
 
+from holonom.failures import ErrorKind
 from holonom.record import derived_record, read_record
 from holonom.typeset.document import tex_document
 
@@ -87,7 +89,7 @@ def test_derive_says_where_the_document_cannot_be_written(particle_scene, tmp_pa
     command = [sys.executable, "-m", "holonom", "derive", str(particle_scene), "--tex", str(file)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout) == (2, "")
-    assert "cannot be written" in done.stderr
+    assert re.search(message_of(ErrorKind.UNWRITABLE, str(file)), done.stderr)
 
 
 def test_a_mass_matrix_without_its_zeros_is_no_smaller_matrix(particle_scene):

@@ -1,15 +1,18 @@
 """holonom stability: one table, one figure, one document, and the status that tells whether a case fails."""
 
 import json
+import re
 import xml.etree.ElementTree as ET
 
 import pytest
 from jsonschema import Draft202012Validator
+from refusing import message_of
 
 from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, holonom_result, reference_result, required
 from holonom.cli import holonom
 from holonom.explanations import advice
+from holonom.failures import ErrorKind
 from holonom.formats import schema
 from holonom.simulation.hard_cases import Difficulty
 
@@ -67,7 +70,7 @@ def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
 
 def test_figure_that_cannot_be_written_is_refused(monkeypatch, tmp_path, capsys):
     assert run(monkeypatch, (HELD,), "--plot", tmp_path / "no" / "figure.svg") == 2
-    assert "cannot be written" in capsys.readouterr().err
+    assert re.search(message_of(ErrorKind.UNWRITABLE), capsys.readouterr().err)
     assert not list(tmp_path.iterdir())
 
 

@@ -6,14 +6,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from problems import problem
+from refusing import failing
 
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstruction
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
+from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
 
@@ -70,8 +72,9 @@ def test_an_obstruction_leaves_the_last_good_state(engine):
     """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
     motion = engine(problem("linkage.mac"))
     pieces = []
-    with pytest.raises(Obstruction, match="nears a singular one"):
+    with pytest.raises(Obstruction) as stopped:
         pieces.extend(motion.integrate(10.0))
+    assert stopped.value.case is Difficulty.SINGULAR_CONFIGURATION
     assert pieces[-1].end == motion.time
     assert np.isfinite(motion.state).all()
     x, y = motion.state[:2]
@@ -82,7 +85,7 @@ def test_an_obstruction_leaves_the_last_good_state(engine):
 def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_scene):
     """Truth: ddot(x) = 6 x^2 has the motion x = 1/(1 - t)^2, which ends at t = 1."""
     motion = engine(motion_problem(write_scene(BURST), Request(), Limits()))
-    with pytest.raises(HolonomError, match=r"beyond t = 0\.99999.*, where steps become too short"):
+    with failing(ErrorKind.NO_WAY_ON):
         motion.advance(2.0)
     assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)
 

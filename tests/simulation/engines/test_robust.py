@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from problems import problem
+from refusing import failing
 from truths import GRAVITY, four_bar, linkage_period, linkage_tip, sarrus_angles
 
 import holonom
@@ -116,15 +117,14 @@ def test_a_velocity_along_no_branch_is_refused(in_line):
 
 
 def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
-    with pytest.raises(HolonomError, match="singular configuration") as refused:
+    with failing(ErrorKind.NO_WAY_ON):
         RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
-    assert refused.value.kind is ErrorKind.NO_WAY_ON
 
 
 def test_the_first_arc_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
     motion = RobustEngine(in_line("-3", "-3"), 1e-10)
     monkeypatch.setattr(robust, "probed", lambda *asked: (2, 0.0))  # whose velocities point nowhere
-    with np.errstate(divide="raise"), pytest.raises(HolonomError, match="that it starts from"):
+    with np.errstate(divide="raise"), failing(ErrorKind.NO_WAY_ON):
         motion.restart(0.0, np.array([1.0, 0, 2, 0, 0, 0, 0, 0]))
 
 
@@ -216,9 +216,8 @@ def test_a_near_miss_is_no_singularity(write_scene):
 @pytest.mark.long
 def test_a_length_that_vanishes_stops_the_motion():
     motion = RobustEngine(problem("hard/vanishing_length.mac"))
-    with pytest.raises(HolonomError, match="steps become too short") as refused:
+    with failing(ErrorKind.NO_WAY_ON):
         motion.advance(2.0)
-    assert refused.value.kind is ErrorKind.NO_WAY_ON
     assert motion.time == pytest.approx(1.0, abs=1e-5)
 
 
