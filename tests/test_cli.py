@@ -140,8 +140,8 @@ def test_bad_input_is_one_sentence_and_writes_nothing(write_scene, tmp_path):
 
 
 def test_verbose_shows_how_to_repeat_the_run(write_scene):
-    done = holonom("--verbose", "derive", write_scene('print("on the way")$ error("lost")$'))
-    assert "on the way" in done.stderr
+    done = holonom("--verbose", "derive", write_scene('print("printed")$ error("lost")$'))
+    assert "printed" in done.stderr
     assert "maxima --" in done.stderr
 
 
@@ -260,7 +260,7 @@ def test_check_and_derive_were_silent_about_equations_that_are_not_made(holonom_
     assert (report["left_out"], report["disagreements"]) == (9, 0)
     left_out = {found["number"] for found in report["equations"] if found["verdict"] == "left out"}
     assert left_out == {"4", "5", "8", "9", "10", "11", "13", "18"}
-    assert all("more than closed_form_size" in each["detail"] for each in report["equations"] if not each["id"])
+    assert all("closed_form_size" in each["detail"] for each in report["equations"] if not each["id"])
     assert "--closed-form-size 3288 makes them" in holonom_here("derive", chain).stdout
     made = holonom_here("derive", chain, "--set", "N=2", "--closed-form-size", "1")
     assert "(4), (5), (8), (9), (10), (11) not made" in made.stdout

@@ -277,7 +277,7 @@ def test_json_has_the_stated_shape(capsys, monkeypatch):
         ["inertia", "damping"],
     ]
     assert document["motion"].keys() == {"verdict", "for", "evidence", "order", "first"}
-    assert document["motion"]["verdict"] == "not free"
+    assert document["motion"]["verdict"] == FreeMotionVerdict.NOT_FREE
     assert document["motion"]["first"].keys() == {"multiplier", "order", "value"}
     assert document["trajectory"]["kind"] == "closed form"
     assert document["trajectory"]["samples"][0] == [0, 0.3]

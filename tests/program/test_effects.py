@@ -10,6 +10,7 @@ import sympy as sp
 from click.testing import CliRunner
 from confinement import without_notice
 from programs import PENDULUM, document
+from refusing import message_of
 
 from holonom.cli import holonom
 from holonom.crosscheck.check import check_record
@@ -20,7 +21,7 @@ from holonom.crosscheck.points import random_point
 from holonom.crosscheck.premises import differences, premises_of
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import VERSION
 from holonom.program.effects import Measure, Status, read_costs, scene_costs
 from holonom.program.forms import MotionProgram
@@ -148,7 +149,6 @@ def refusal_of(file, *options):
     result = CliRunner(mix_stderr=False).invoke(holonom, ["effects", str(file), *options], standalone_mode=False)
     assert result.return_value == 2
     said = without_notice(result.stderr)
-    assert said.startswith("holonom: error: ")
     assert said.count("\n") == 1
     return said
 
@@ -331,17 +331,13 @@ def test_text_that_is_not_json_is_refused():
 
 def test_an_effect_that_does_not_exist_is_refused(write_scene):
     file = write_scene(spherical_scene(["antigravity"]))
-    assert "unknown effect 'antigravity'" in refusal_of(file)
+    assert re.search(message_of(ErrorKind.REFUSED, "'antigravity'"), refusal_of(file))
 
 
-def test_a_scene_without_motion_is_refused(write_scene):
-    text = spherical_scene([]).replace("[relative_motion]", "[gravity, drag]")
-    assert "leave no kinetic energy" in refusal_of(write_scene(text))
-
-
-def test_a_singular_bordered_matrix_is_refused(write_scene):
-    text = spherical_scene([]).replace("[relative_motion]", "[support_motion]")
-    assert "singular" in refusal_of(write_scene(text))
+@pytest.mark.parametrize("effects", ["[gravity, drag]", "[support_motion]"])
+def test_effects_without_squares_of_velocities_are_refused(write_scene, effects):
+    text = spherical_scene([]).replace("[relative_motion]", effects)
+    assert re.search(message_of(ErrorKind.REFUSED, "relative_motion"), refusal_of(write_scene(text)))
 
 
 def test_a_redundant_constraint_costs_nothing(write_scene):
@@ -354,6 +350,6 @@ def test_a_redundant_constraint_costs_nothing(write_scene):
 
 
 def test_a_value_for_an_undeclared_parameter_is_refused(write_scene):
-    assert "setting 'mass' is neither" in refusal_of(SPHERICAL, "--set", "mass=2")
+    assert re.search(message_of(ErrorKind.REFUSED, "'mass'"), refusal_of(SPHERICAL, "--set", "mass=2"))
     file = write_scene(spherical_scene([]).replace("m = 3/2", "mass = 3/2"))
-    assert "parameter_values names 'mass'" in refusal_of(file)
+    assert re.search(message_of(ErrorKind.REFUSED, "parameter_values", "'mass'"), refusal_of(file))

@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from refusing import failing
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -271,23 +272,22 @@ def test_a_mass_rests_at_the_bottom_of_a_kink():
 
 
 @pytest.mark.parametrize(
-    ("problem", "said"),
+    ("problem", "time", "facts"),
     [
-        (lambda: pendulum(law="1 + unit_step(t - 1/2)"), "0.5, where the constraints or the masses jump"),
-        (lambda: mass(potential="signum(x)", v="-1", x="1/2"), "0.5, where the energy jumps as x"),
-        (lambda: mass(potential="-abs(x)"), "0, where x is zero, and the motion may leave to either side"),
-        (lambda: pendulum(law="1/(2 - t)", start="x = 3/10, y = -2/5", end="3"), "2, where"),
-        (lambda: pendulum(law="1 + sqrt(1 - t)", start="x = 6/5, y = -8/5", end="3"), "1, where"),
-        (lambda: mass(force="sqrt(1 - t)", end="3"), "1, where an expression of the time"),
+        (lambda: pendulum(law="1 + unit_step(t - 1/2)"), "0.5", ()),
+        (lambda: mass(potential="signum(x)", v="-1", x="1/2"), "0.5", ("x",)),
+        (lambda: mass(potential="-abs(x)"), "0", ("x",)),
+        (lambda: pendulum(law="1/(2 - t)", start="x = 3/10, y = -2/5", end="3"), "2", ()),
+        (lambda: pendulum(law="1 + sqrt(1 - t)", start="x = 6/5, y = -8/5", end="3"), "1", ()),
+        (lambda: mass(force="sqrt(1 - t)", end="3"), "1", ()),
         # on the boundary of two halves of the time span, with a wrong number and exit status 1
-        (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1, where an expression of the time"),
+        (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1", ()),
     ],
 )
-def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, said):
-    with pytest.raises(HolonomError) as refused:
+def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, time, facts):
+    with failing(ErrorKind.NO_WAY_ON, *facts) as stopped:
         end_of(problem(), EngineName.AUTO)
-    assert refused.value.kind is ErrorKind.NO_WAY_ON
-    assert said in refused.value.detail
+    assert stopped.value.detail.split(",")[0] == time
 
 
 def test_no_step_is_longer_than_asked_for():

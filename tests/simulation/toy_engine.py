@@ -47,7 +47,7 @@ class ToyEngine:
     def integrate(self, until):
         while self.time < until:
             if STOPS_AT <= self.time < GOES_ON_AT:
-                reason = "the toy stops here"
+                reason = "stopped"
                 raise Obstruction(
                     self.time, Difficulty.SINGULAR_CONFIGURATION, reason, lambda t, state: t >= GOES_ON_AT
                 )

@@ -51,8 +51,7 @@ def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypa
 def test_a_failing_case_leaves_with_one(monkeypatch, capsys):
     assert run(monkeypatch, (HELD, FAILED)) == 1
     table = capsys.readouterr().out
-    assert "fails" in table
-    assert "2 hard cases, 1 failure" in table
+    assert table.count("fails") == 1
     assert advice(Difficulty.STIFF) in table
 
 

@@ -37,7 +37,7 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
     assert report.choice.engine == document["choice"]["engine"] == "toy"
     assert [segment.engine for segment in report.segments] == ["toy", "robust", "toy"]
     assert [segment.start for segment in report.segments] == pytest.approx([0, 1, 1.5], abs=0.1)
-    assert document["segments"][1]["reason"] == "the toy stops here"
+    assert document["segments"][1]["reason"] == "stopped"
     assert document["engine"] == "toy, robust {:.6g}..{:.6g}, toy".format(
         *(segment.start for segment in report.segments[1:])
     )
