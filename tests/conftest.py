@@ -39,7 +39,10 @@ settings.load_profile("patient")
 ScenesWriter = Callable[[str], Path]
 # Fixtures that take long, and are made once: the group of all tests that ask for them.
 MADE_ONCE = {"results": "companion", "browser": "companion", "printed_equations": "errata"}
-LONG = {"results", "objects", "programs"}  # fixtures that take long, and with them all tests that ask for them
+# Fixtures that take long, and with them all tests that ask for them.
+LONG = {"results", "objects", "programs", "own", "partners", "reference", "first_made"}
+# Tests that took more than a second of processor time: a function, or one of its cases.
+MEASURED = frozenset(Path(__file__).with_name("measured.txt").read_text(encoding="utf-8").splitlines())
 LONGEST = (
     "companion",
     "test_rtests",
@@ -156,8 +159,8 @@ def printed_equations() -> tuple[PrintedEquation, ...]:
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """Two more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
-    return (os.cpu_count() or 1) + 2
+    """One more than there are cores: some tests wait, for a browser, a signal, or the end of a time limit."""
+    return (os.cpu_count() or 1) + 1
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -172,6 +175,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         item.add_marker(pytest.mark.xdist_group(group))
         if LONG.intersection(item.fixturenames):
             item.add_marker(pytest.mark.long)
+        if MEASURED.intersection({item.nodeid, item.nodeid.partition("[")[0]}):
+            item.add_marker(pytest.mark.long)
+            item.add_marker(pytest.mark.measured)
     items.sort(key=lambda item: (_rank(groups[item]), -sizes[groups[item]], groups[item]))
 
 

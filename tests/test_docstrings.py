@@ -36,16 +36,19 @@ def parsed(file):
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
-SUMMARIES = [(file.name, text.split("\n\n")[0]) for file in sorted(PACKAGE.rglob("*.py")) for text in docstrings(file)]
+@pytest.fixture(scope="module")
+def summaries():
+    return [(file.name, text.split("\n\n")[0]) for file in sorted(PACKAGE.rglob("*.py")) for text in docstrings(file)]
 
 
-def test_a_summary_is_one_short_line():
-    assert [each for each in SUMMARIES if len(each[1]) > 80 or "\n" in each[1] or ";" in each[1]] == []
+def test_a_summary_is_one_short_line(summaries):
+    assert summaries
+    assert [each for each in summaries if len(each[1]) > 80 or "\n" in each[1] or ";" in each[1]] == []
 
 
-def test_a_summary_names_its_subject():
+def test_a_summary_names_its_subject(summaries):
     clause = re.compile(r"((Return|Yield) )?(what|whatever|whether|where|when|how|why|those|the same) ", re.IGNORECASE)
-    assert [each for each in SUMMARIES if clause.match(each[1])] == []
+    assert [each for each in summaries if clause.match(each[1])] == []
 
 
 def test_public_functions_document_parameters_and_results():

@@ -37,7 +37,7 @@ from scipy.stats import binomtest
 from sources import ROOT, Function, functions, nearest_tests, read
 
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-PYTEST = ["-q", "-x", "-n0", "-rfE", "-p", "no:cacheprovider", "-m", "not long"]
+PYTEST = ["-q", "-x", "-n0", "-rfE", "-p", "no:cacheprovider", "-m", "not long or measured"]
 SECONDS = 240  # of processor time for each process of a test file; the unchanged program takes less than a third
 LONGEST = 3600  # seconds by the clock, for what waits without computing
 
