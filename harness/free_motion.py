@@ -17,7 +17,7 @@ from .described import System, Values, each
 from .documents import ask
 from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
-from .language import Message
+from .language import Message, translatable
 from .mathjson import to_sympy
 from .sandbox import Limits
 from .shown import Shown
@@ -221,7 +221,7 @@ class FreeMotion(Shown):
 
     scene: str
     condition_trees: tuple[Tree, ...] | None = key("condition")  # as MathJSON
-    left_out: str | None
+    left_out: Message | None
     motion: MotionVerdict
     universal: UniversalControls
     trajectory: TrajectoryControl
@@ -323,7 +323,7 @@ def with_verdicts(found: FreeMotion) -> FreeMotion:
     if motion.verdict is FreeMotionVerdict.FREE and motion.states == "all states" and found.premises.control_law:
         contradiction = trial.contradiction_of_free_motion(found.premises.control_law)
     if contradiction:
-        evidence = f"{motion.evidence}; but {contradiction}"
+        evidence = translatable("%(reason)s; %(note)s", reason=motion.evidence, note=contradiction)
         motion = replace(motion, verdict=FreeMotionVerdict.UNDECIDED, states="this state", evidence=evidence)
     laws = tuple(replace(law, check=trial.of_law(law.controls, law.positive)) for law in universal.laws)
     verdict, contradiction = trial.verdict_on_laws(universal.verdict, [law.check for law in laws])

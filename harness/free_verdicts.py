@@ -19,6 +19,7 @@ from .crosscheck.seed import fresh_seed
 from .crosscheck.system import MechanicalSystem
 from .crosscheck.universal_laws import ControlLaw, verify_law
 from .crosscheck.verdict import Verdict
+from .language import translatable
 
 T = TypeVar("T")
 Law = Mapping[str, Expr]
@@ -62,7 +63,9 @@ class FreeMotionTrial:
             Empty if there is no contradiction.
         """
         found = self.of_law(law)
-        return f"under the scene's law {found.detail}" if found.verdict is Verdict.DISAGREES else ""
+        if found.verdict is not Verdict.DISAGREES:
+            return ""
+        return translatable("under the scene's law %(detail)s", detail=found.detail)
 
     def verdict_on_laws(self, verdict: str, checks: Sequence[CheckResult]) -> tuple[str, str]:
         """Return the verdict on laws after their checks.
@@ -83,12 +86,14 @@ class FreeMotionTrial:
         found = [check.verdict for check in checks]
         if Verdict.DISAGREES in found:
             detail = next(check.detail for check in checks if check.verdict is Verdict.DISAGREES)
-            return "undecided", f"the equations of motion contradict a law: {detail}"
+            return "undecided", translatable("the equations of motion contradict a law: %(detail)s", detail=detail)
         if Verdict.UNDECIDED in found:
             left = "some" if Verdict.AGREES in found else "undecided"
-            return left, "a law was not confirmed on the time span by the equations of motion"
+            return left, translatable("a law was not confirmed on the time span by the equations of motion")
         if verdict == "none" and (law := self._law_found()):
-            return "undecided", f"the search of closed forms found no law, a numerical search did: {law}"
+            return "undecided", translatable(
+                "the search of closed forms found no law, a numerical search did: %(law)s", law=law
+            )
         return verdict, ""
 
     def _law_found(self) -> str:

@@ -46,13 +46,16 @@ class Message(str):
         Parameters
         ----------
         content : str or dict
-            Part of the document.
+            Part of the document. Values may be sentences in their turn.
 
         Returns
         -------
         str
         """
-        return content if isinstance(content, str) else Message(content["pattern"], **content["values"])
+        if isinstance(content, str):
+            return content
+        values = {name: Message.of_document(value) for name, value in content["values"].items()}
+        return Message(content["pattern"], **values)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _message, (self.pattern, self.values)

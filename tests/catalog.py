@@ -27,13 +27,17 @@ from holonom.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, catalog_file
 PACKAGE = Path(holonom.__file__).parent
 TEMPLATE = LOCALE / f"{DOMAIN}.pot"
 KEYWORDS = {"gettext": None, "ngettext": (1, 2), "translatable": None, "_": None}
-STRING = r'"((?:[^"\\]|\\.)*)"'
+STRING = r'"((?:[^"\\]|\\[\s\S])*)"'
 IN_MAXIMA = re.compile(
     rf"\b(?:title|source)\s*=\s*{STRING}"  # of a system or a scene
     rf'|\bequation\("[^"]*",\s*"\w+",\s*{STRING}'  # names of equations
     rf'|\bprinted\("[^"]*",\s*{STRING}'
     rf"|\bworded\(\s*{STRING}"  # reasons of results
-    rf'|\b(?:then|else) "(inverse[^"]*)"'
+    # refusals that are reasons of results
+    rf"|\['(?:irregular_constraints|cancelling_masses|open_acceleration), \"\",\s*{STRING}"
+    rf"|\['(?:control_without_law|parameter_without_value|reacting_not_possible), \"\{{1\}}\",\s*{STRING}"
+    rf"|\['\w+, \"motion_(?:series|program)\",\s*{STRING}"
+    rf'|\b(?:then|else) "(inverse[^"]*|multipliers, [^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
 SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
@@ -153,7 +157,9 @@ def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str]
     """Titles, sources, names of equations, notes and reasons in a Maxima file."""
     text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL)
     for found in IN_MAXIMA.finditer(text):
-        message = " ".join(next(filter(None, found.groups()), "").split())
+        message = " ".join(next(filter(None, found.groups()), "").replace("\\\n", "").split())
+        if found[0].startswith("['"):
+            message = re.sub(r"\{(\d)\}", r"%(fact\1)s", message).rstrip(".")
         if message:
             yield 0, "gettext", message.replace('\\"', '"'), []
 

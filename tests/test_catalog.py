@@ -1,11 +1,16 @@
 """The catalogs hold the messages of the sources, and what is wrong in a translation is found."""
 
+import re
+from pathlib import Path
+
 import pytest
 from babel.messages.catalog import Catalog
-from catalog import TEMPLATE, collected, faults, read_catalog, template_text
+from catalog import STRING, TEMPLATE, collected, faults, read_catalog, template_text
 
 from holonom.language import ENGLISH, LANGUAGES
+from holonom.maxima import LIBRARY
 
+SENTENCE = re.compile(r"[A-Za-z]{2,} [a-z]{2,} [a-z]{2,}")
 OTHERS = [language for language in LANGUAGES if language != ENGLISH]
 
 
@@ -49,3 +54,16 @@ def test_a_fuzzy_translation_is_found_and_a_good_one_is_none():
     catalog.add("free motion", "自由运动", flags=["fuzzy"])
     catalog.add(("%(n)s step", "%(n)s steps"), ("%(n)s 步",))
     assert faults(catalog) == ["fuzzy: free motion"]
+
+
+def test_every_reason_of_a_free_motion_is_a_message(found):
+    """A reason that is put together with sconcat is English on a Chinese page."""
+    messages = {message.id for message in found}
+    sentences = {}
+    for file in [each for name in ("algebra", "free_motion") for each in sorted((Path(LIBRARY) / name).glob("*.mac"))]:
+        text = re.sub(r"/\*.*?\*/|define_variable\([^$]*\$", "", file.read_text(encoding="utf-8"), flags=re.DOTALL)
+        for each in re.findall(STRING, text):
+            sentence = " ".join(each.replace("\\\n", "").split())
+            if SENTENCE.search(sentence) and sentence not in messages:
+                sentences[sentence] = file.name
+    assert sentences == {}

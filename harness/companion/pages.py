@@ -11,7 +11,7 @@ from sympy import Expr
 from ..explanations import advice, engine_text, notes
 from ..files import shared
 from ..free_motion import UniversalLaw
-from ..language import ENGLISH, gettext, ngettext, spoken, translated
+from ..language import gettext, ngettext, translated
 from ..number_texts import number
 from ..record import Scene
 from . import TEMPLATES, mathematics, table
@@ -190,14 +190,8 @@ def _coefficient(text: str) -> str:
 
 
 def _maxima_text(text: str) -> Markup:
-    """Return a reason of Maxima's, an expression that it names as code.
-
-    In English where the catalog does not know it.
-    """
-    shown = translated(text)
-    marked = NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(shown)))
-    foreign = shown == text and spoken() != ENGLISH
-    return Markup(f'<span lang="{ENGLISH}">{marked}</span>' if foreign else marked)
+    """Return a reason of Maxima's, an expression that it names as code."""
+    return Markup(NAMED_BY_MAXIMA.sub(r"\1<code>\2</code>\3", str(escape(translated(text)))))
 
 
 def _power_of_ten(value: float) -> Markup:

@@ -114,11 +114,7 @@ def scene_numbers_left_out(closed: bool, series: bool, law: bool) -> tuple[str, 
 
 
 def _multipliers_in_words(redundant: Sequence[str]) -> str:
-    if not redundant:
-        return "multipliers"
-    places = ", ".join(name.removeprefix("lambda") for name in redundant)
-    constraints = "constraint" if len(redundant) == 1 else "constraints"
-    return f"multipliers, not unique: those that are zero for the redundant {constraints} {places}"
+    return "multipliers, not unique: zero for redundant constraints" if redundant else "multipliers"
 
 
 def predicted_size(system: System, derived: Derivation, known: MechanicalSystem, limit: int) -> float:

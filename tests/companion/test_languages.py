@@ -2,7 +2,7 @@
 
 import re
 from gettext import NullTranslations
-from xml.etree.ElementTree import Element
+from xml.etree.ElementTree import Element, fromstring
 
 import pages
 import pytest
@@ -20,11 +20,14 @@ from holonom.companion.chapters import gallery
 from holonom.companion.directives import FILES
 from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.shelf import Shelf
-from holonom.language import speaking
+from holonom.free_motion import free_motion
+from holonom.language import Message, speaking
+from holonom.sandbox import Limits
 from holonom.simulation.request import Stabilization
 
 PLACEHOLDER = re.compile(r"%\(\w+\)[.\d]*[a-z]")
 WORD = re.compile(r"[A-Za-z]{3,}")
+ENGLISH_PROSE = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
 OPEN, CLOSE = "⟦", "⟧"
 CODE = {"code", "pre", "math", "script", "style", "select"}
 
@@ -71,6 +74,33 @@ def test_the_pages_of_the_book_and_the_manual_are_translated():
 def test_the_catalogs_have_the_messages_of_the_pages(tmp_path):
     for name, template in page_templates(tmp_path).items():
         assert {each.id for each in template if each.id} == {each.id for each in read_catalog("zh", name) if each.id}
+
+
+@pytest.mark.parametrize(
+    ("constraint", "law", "start"),
+    [
+        ("y - u*x", "1 + t^(7/2)", "x = 1, dot(x) = 0"),  # a law that is not analytic
+        ("(y - u)^2", "t", "x = 0, y = 0, dot(x) = 0, dot(y) = 1"),  # a constraint without a gradient
+        ("y - u", "t", "x = 0, dot(x) = 0"),  # free in this state, for generic values
+    ],
+)
+def test_reasons_of_verdicts_have_no_english_on_a_chinese_page(constraint, law, start, tmp_path):
+    file = tmp_path / "scene.mac"
+    file.write_text(
+        f"""load("holonom.mac")$
+        system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [k],
+          kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces = [spring = [-k*x, 0]], constraints = [{constraint}])$
+        scene : holonomic_scene(system, control_law = [u = {law}], initial_state = [{start}])$""",
+        encoding="utf-8",
+    )
+    found = free_motion(file, None, {}, Limits())
+    assert isinstance(found.motion.evidence, Message)  # with values
+    with speaking("zh"):
+        answers = companion_pages.environment("zh").get_template("answers.html").module
+        shown = answers.motion_answer(found.motion) + answers.universal_answer(found.universal)
+        shown += answers.trajectory_answer(found.trajectory) + answers.refused(found.left_out or "")
+    page = fromstring(f"<body>{shown}</body>")
+    assert ENGLISH_PROSE.findall(prose(page)) == []
 
 
 class Bracketing(NullTranslations):
