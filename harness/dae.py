@@ -7,7 +7,7 @@ With r the left side of Lagrange's equations less the right one, and y = (q, v, 
     index 1    the same with d2f/dt2, v' its accelerations, for f
     ggl        q' - v - J^T mu = 0,  r = 0,  df/dt = 0,  f = 0,  y = (q, v, lambda, mu): index 2 without drift
 
-(Gear, Leimkuhler & Gupta, J. Comput. Appl. Math. 12 (1985) 77; Brenan, Campbell & Petzold, chapter 6).
+(Gear, Leimkuhler & Gupta, J. Comput. Appl. Math. 12 (1985) 77, and Brenan, Campbell & Petzold, chapter 6).
 """
 
 from collections.abc import Mapping

@@ -1,6 +1,6 @@
 """Errors: every kind with its message and hints, and the package's one exception."""
 
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from enum import Enum
 from pathlib import Path
 from string import Formatter
@@ -39,7 +39,8 @@ class ErrorKind(Enum):
     NOT_MAXIMA = (
         MACHINE,
         "Maxima does not start: {detail}",
-        "put a working Maxima first in PATH, free space for temporary files",
+        "put a working Maxima first in PATH",
+        "free space for temporary files",
         "lift a limit on memory",
     )
     OUTPUT_TRUNCATED = (
@@ -141,14 +142,19 @@ class ErrorKind(Enum):
         "give the law as a formula",
     )
     NOT_A_FILE = ("C and FMI output needs a destination", "use -o DIR for C, -o FILE.fmu for FMI")
-    NOT_A_CHOICE = "unknown value {detail}"
+    NOT_A_CHOICE = "invalid value {detail}"
     NOT_A_TIME = (
         "invalid time '{detail}'",
         "write a number such as 0.75 or 3/4, within the range of double precision",
     )
     NOT_IN_RANGE = "the value is out of range: {detail}"
     NO_SUCH_SCENE = "unknown scene {detail}"
-    TOO_MANY_SAMPLES = ("{detail}", "reduce the number of samples, write CSV or Parquet only", "raise {--memory-limit}")
+    TOO_MANY_SAMPLES = (
+        "{detail}",
+        "reduce the number of samples",
+        "write CSV or Parquet only",
+        "raise {--memory-limit}",
+    )
     DISK_TOO_SMALL = ("{detail}", "reduce the number of samples", "write to another disk")
     TOO_MANY_STEPS = ("{detail}", "end earlier with {--until}", "use longer steps")
     NOT_A_STEP = ("invalid step length {detail}", "give a number greater than 0 with {--max-step}")
@@ -395,17 +401,23 @@ class HolonomError(Exception):
         """Description of the error, without the place and the hints."""
         return self.kind.reason.format(detail=self.detail, **self.facts)
 
-    def _hints(self, spelt: Callable[[str], str], options: Collection[str] | None) -> Iterator[str]:
-        """Yield the hints that name no other options, each option as it is spelt."""
+    def _hints(self, spelt: Callable[[str], str], options: Collection[str] | None) -> list[str]:
+        """Return the hints that name no other options, each option as it is spelt."""
         facts = {"detail": self.detail, **self.facts}
-        for hint in self.kind.hints:
-            named = {name for _, name, *_ in Formatter().parse(hint) if name and name not in facts}
-            if options is None or named <= set(options):
-                yield hint.format(**facts, **{name: spelt(name) for name in named})
+        named = {
+            hint: {name for _, name, *_ in Formatter().parse(hint) if name and name not in facts}
+            for hint in self.kind.hints
+        }
+        return [
+            hint.format(**facts, **{name: spelt(name) for name in names})
+            for hint, names in named.items()
+            if options is None or names <= set(options)
+        ]
 
     def _message(self, spelt: Callable[[str], str], options: Collection[str] | None = None) -> str:
         located = ": ".join(filter(None, (self.place, self.option and spelt(self.option), self.reason)))
-        todo = ", or ".join(self._hints(spelt, options))
+        *first, last = self._hints(spelt, options) or [""]
+        todo = ", or ".join(filter(None, (", ".join(first), last)))
         return visible(" ".join(f"{part.rstrip('.')}." for part in (located, todo[:1].upper() + todo[1:]) if part))
 
 

@@ -61,7 +61,7 @@ class Function:
         Returns
         -------
         callable
-            None stands for a missing value.
+            None is a missing value.
         """
         return partial(self.value, mp) if self.value else getattr(mp, self.in_sympy)
 

@@ -12,6 +12,7 @@ from decimal import Decimal
 from enum import StrEnum
 from fractions import Fraction
 from functools import wraps
+from numbers import Integral, Real
 from types import NoneType
 from typing import Any, TypeVar, get_origin
 
@@ -29,6 +30,7 @@ NAMES = {
     Fraction: "number",
     NoneType: "None",
 }
+EXPECTED = {bool: (bool, "True or False"), int: (Integral, "an integer"), float: (Real, "a number"), str: (str, "text")}
 Number = int | float | Fraction | Decimal | str
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -138,32 +140,40 @@ def read(each: Field, value: Any) -> Any:
     Raises
     ------
     HolonomError
-        The value is not one of the choices, not in the range, or no time.
+        The value is not one of the choices, not in the range, no time, or of another type.
     """
     kind, stated = kind_of(each), each.metadata["option"]
     if value is None:
         return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
-            detail = f"'{value}': expected {', '.join(choices)}"
-            raise HolonomError(ErrorKind.NOT_A_CHOICE, detail=detail, option=spelt_of(each))
+            raise _unexpected(each, value, ", ".join(choices))
         return kind(str(value))
     if kind is Fraction:
         return read_time(value, spelt_of(each))
-    if kind is str:
-        return value
     if kind is tuple:
         names = value.split(",") if isinstance(value, str) else value
+        if not (isinstance(names, Iterable) and all(isinstance(name, str) for name in names)):
+            raise _unexpected(each, value, "names")
         return tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
-    if stated.least is not None and value < stated.least:
+    expected = [EXPECTED[kind] for kind in _types(each) if kind is not NoneType]
+    if not any(isinstance(value, taken) for taken, _ in expected):
+        raise _unexpected(each, value, " or ".join(name for _, name in expected))
+    if isinstance(value, str):
+        return value
+    if stated.least is not None and not value >= stated.least:
         bound = f"{stated.least:g} or more"
-    elif stated.above is not None and value <= stated.above:
+    elif stated.above is not None and not value > stated.above:
         bound = f"more than {stated.above:g}"
-    elif stated.most is not None and value > stated.most:
+    elif stated.most is not None and not value <= stated.most:
         bound = f"at most {stated.most:g}"
     else:
         return value
     raise HolonomError(ErrorKind.NOT_IN_RANGE, detail=f"expected {bound}, not {value}", option=spelt_of(each))
+
+
+def _unexpected(each: Field, value: Any, expected: str) -> HolonomError:
+    return HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"'{value}': expected {expected}", option=spelt_of(each))
 
 
 def spelt_of(each: Field) -> str:

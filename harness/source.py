@@ -93,8 +93,8 @@ def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limi
     Raises
     ------
     HolonomError
-        The file is missing, is refused, asks a question or exceeds a limit; Maxima is missing; what the file describes
-        is not a description.
+        The file is missing, is refused, asks a question or exceeds a limit. Maxima is missing. The document is not a
+        description.
     """
     text = read_maxima_text(file)
     if is_description(text):

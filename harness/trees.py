@@ -3,7 +3,7 @@
 A tree is the result of `json.loads` for
 
     integer          7, or {"num": "12345678901234567890"} from 2^53 on
-    float            {"num": "1.25e0"}: a double; with more than 17 digits a number of that many digits
+    float            {"num": "1.25e0"}: a double, or with more than 17 digits a number of that many digits
     symbol           "q1", "dot(q1)", "lambda1": always a real quantity
     constant         "Pi", "ExponentialE", "ImaginaryUnit", "EulerGamma"
     application      ["Add", a, b, ...], ["Power", a, b], ["Sin", a], ["Rational", 1, 3], ...

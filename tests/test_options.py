@@ -8,6 +8,7 @@ from fractions import Fraction
 import click
 import pytest
 from click.testing import CliRunner
+from refusing import failing
 
 from holonom.cli.options import takes
 from holonom.failures import ErrorKind, HolonomError
@@ -83,6 +84,9 @@ def test_field_of_request_is_argument_in_python():
     [
         ({"color": "green"}, ErrorKind.NOT_A_CHOICE),
         ({"size": 1}, ErrorKind.NOT_IN_RANGE),
+        ({"size": "x"}, ErrorKind.NOT_A_CHOICE),
+        ({"size": 2.5}, ErrorKind.NOT_A_CHOICE),
+        ({"price": [1]}, ErrorKind.NOT_A_CHOICE),
         ({"price": 0}, ErrorKind.NOT_IN_RANGE),
         ({"price": 11}, ErrorKind.NOT_IN_RANGE),
         ({"bought": "noon"}, ErrorKind.NOT_A_TIME),
@@ -99,3 +103,8 @@ def test_wrong_value_of_option_is_refused(given, failure):
     assert str(refused.value).startswith(f"{spelt[2:]}: ")  # `ARGUMENTS` has the options with other names in Python
     assert refused.value.message().startswith(f"{spelt}: ")
     assert CliRunner().invoke(toy, [spelt, str(value)]).exit_code == 2
+
+
+def test_not_a_number_is_out_of_every_range():
+    with failing(ErrorKind.NOT_IN_RANGE):
+        Shop().toy(price=float("nan"))

@@ -63,7 +63,7 @@ def program(
 ) -> int:
     """Write the motion as code.
 
-    json, python and javascript contain the values of the scene; controls are inputs.
+    json, python and javascript contain the values of the scene. Controls are inputs.
 
     c is a C11 library: accelerations and multipliers, the control law, residuals and Jacobian of the constraints, and
     projection. fmu is the same for FMI 3 model exchange. matlab, and python with --module, are functions of arrays.

@@ -2,7 +2,7 @@
 
 ``{value}`EXPRESSION` `` is a value of the page's runs within a line, ``{show} EXPRESSION`` a block of it: a card of an
 equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
-templates; ``{show}`` without one takes a piece of template as its content. ``{run-figure} NAME`` is a figure of the
+templates. ``{show}`` without one takes a piece of template as its content. ``{run-figure} NAME`` is a figure of the
 chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
 ``{exercise} GRADE`` is a question with its ``{answer}``.
 """

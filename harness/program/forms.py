@@ -173,11 +173,11 @@ class MotionProgram:
         form : str
             Name of the form.
         name : str or None
-            Name with which public names begin; None for the file's name.
+            Name with which public names begin. None for the file's name.
         parameters : sequence of str
             Parameters that stay open although the scene gives them values.
         package : str or None
-            Package of `targets.MODULES` that Python computes with; None for the standard library.
+            Package of `targets.MODULES` that Python computes with. None for the standard library.
 
         Returns
         -------
@@ -187,8 +187,8 @@ class MotionProgram:
         Raises
         ------
         HolonomError
-            The form is a motion program, which takes no name and no parameters; there is no such package, or the form
-            is not Python; or as `to_c`.
+            The form is a motion program, which takes no name and no parameters. There is no such package, or the form
+            is not Python. Also for the reasons of `to_c`.
         """
         if package and (form != "python" or package not in MODULES):
             raise HolonomError(ErrorKind.NO_SUCH_MODULE, detail=f"{package} with {form}")

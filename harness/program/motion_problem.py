@@ -42,7 +42,7 @@ class DependsOn(StrEnum):
 class Sign(NamedTuple):
     """A sign that a motion depends on."""
 
-    name: str  # the input of the programs that stands for it
+    name: str  # its input of the programs
     of: str  # the switching function whose sign it is, as Maxima prints it
     by: DependsOn
 

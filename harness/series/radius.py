@@ -15,7 +15,7 @@ A series in even or in odd powers alone is one in the square of the time: its si
 
 References
 ----------
-Mercer & Roberts, SIAM J. Appl. Math. 50 (1990) 1547; Domb & Sykes, Proc. R. Soc. A 240 (1957) 214.
+Mercer & Roberts, SIAM J. Appl. Math. 50 (1990) 1547. Domb & Sykes, Proc. R. Soc. A 240 (1957) 214.
 Guttmann & Joyce, J. Phys. A 5 (1972) L81, for recurrences with corrections in 1/n.
 """
 

@@ -6,7 +6,7 @@ switching function changes its sign, the step is cut, and the equations on both 
 - if both sides lead across the surface, it is crossed.
 - if both lead back to it, the motion slides on it, as dry friction sticks, until one of them does not
   (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4).
-- if a joint is released, its constraints end: the state stays the same, and the accelerations jump;
+- if a joint is released, its constraints end: the state stays the same, and the accelerations jump,
 - if the time derivative of a control law is discontinuous, so are the velocities: the momenta dL/d dot(q) change along
   the constraints' gradients only, by the impulse that makes the new velocities satisfy the constraints (Pars, A
   Treatise on Analytical Dynamics, chapter 14).

@@ -349,7 +349,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     problem : MotionProblem
         With open parameters.
     values : mapping of str to Fraction
-        By name; parameters that are missing keep their values.
+        By name. Missing parameters keep their values.
 
     Returns
     -------
@@ -358,7 +358,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     Raises
     ------
     HolonomError
-        The initial state cannot be adapted to the parameters, or not to one that is known to be the only one; there is
+        The initial state cannot be adapted to the parameters, or not to one that is known to be the only one. There is
         none for these values.
     """
     if Origin.CONTINUED in problem.parametric_start.origins.values():

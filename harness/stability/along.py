@@ -236,8 +236,8 @@ def linearize_along(problem: MotionProblem, equations: LinearEquations, request:
     Raises
     ------
     HolonomError
-        The motion is not analytic or cannot be followed so far; the constraints are singular on the way; the deviations
-        change too fast for the error to be small.
+        The motion is not analytic or cannot be continued so far. The constraints are singular on the way. The
+        deviations change too fast for the error to be small.
     """
     require_analytic(replace(problem, tables=(), signs=()))
     intervals = request.samples - 1

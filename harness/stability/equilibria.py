@@ -108,7 +108,7 @@ class Equilibria(Shown):
     turns : tuple of str
         Coordinates that may be changed by whole turns.
     count : int or None
-        Number of real solutions, by a Groebner basis and Hermite's form; None if the equations are not polynomial, too
+        Number of real solutions, by a Groebner basis and Hermite's form. None if the equations are not polynomial, too
         large, or have infinitely many complex solutions.
 
     Examples

@@ -126,7 +126,7 @@ class LinearEquations:
         -------
         mapping of str to ndarray
             ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
-            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu; ``A_rate``, shape (n, n); ``output``, the
+            gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu. ``A_rate``, shape (n, n). ``output``, the
             scene's own, with its gradients, also by the multipliers that are looked at. ``reactions``, shape (n, f):
             the forces that keep the constraints, those of multipliers, found controls and drives of one.
             ``output_by_forces``, shape (outputs, f).

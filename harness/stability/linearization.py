@@ -11,7 +11,7 @@ N^T A N' = -N^T A' N/2, as little as its lengths in the mass metric allow. Then 
     xi'  = eta + N^T A' N xi/2 + (R^T A P + N^T A' P) du,
     eta' = (N'^T A + N^T A') dv - N^T (D dv + K dq + E0 du + E1 du' + E2 du''),
 
-with A, D, K, E of `holonom.stability.linear_equations` (beyond the paper; with independent coordinates in place of xi:
+with A, D, K, E of `holonom.stability.linear_equations` (beyond the paper, with independent coordinates in place of xi:
 Peterson, Gede & Hubbard, Multibody System Dynamics 33 (2015) 143).
 """
 
@@ -199,7 +199,7 @@ class Linearization(Shown):
         ----------
         input : str
             ``u``: the controls' deviations, if their time derivatives do not enter. ``ddot``: the controls'
-            accelerations; u and du/dt are states then, after xi and eta.
+            accelerations. Then u and du/dt are states, after xi and eta.
         outputs : sequence of str or None
             None for all.
 
@@ -303,8 +303,8 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        A sign changes or is held there; the motion has releases or forces with multipliers, or cannot be continued so
-        far; the constraints are singular there.
+        A sign changes or is held there. The motion has releases or forces with multipliers, or cannot be continued so
+        far. The constraints are singular there.
     """
     require_analytic(replace(problem, signs=(), tables=()))
     t, state = state_at(problem, at)

@@ -67,8 +67,8 @@ class RealSolutions:
         Returns
         -------
         dict of str to SymPy expression
-            Rational numbers, square roots, or roots of irreducible polynomials (``CRootOf``); arc cosines of these for
-            angles. Empty if the equations are large.
+            Rational numbers, square roots, or roots of irreducible polynomials (``CRootOf``), and arc cosines of
+            these for angles. Empty if the equations are large.
         """
         found = {name: self._exact(name, value) for name, value in values.items()}
         return {name: value for name, value in found.items() if value is not None}
@@ -117,7 +117,7 @@ def solve_exactly(equations: LinearEquations, kept: Sequence[int], controls: Seq
     equations : LinearEquations
         Of the scene.
     kept : sequence of int
-        Indices of independent constraints, counted from 0; the multipliers of the others are zero.
+        Indices of independent constraints, counted from 0. The multipliers of the others are zero.
     controls : sequence of float
         Constant values, in the order of the equations.
 

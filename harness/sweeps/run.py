@@ -84,7 +84,7 @@ class Sweep:
         Parameters
         ----------
         quantity : str or None
-            A column; None for the first that is kept.
+            A column. None for the first that is kept.
 
         Returns
         -------
@@ -93,7 +93,7 @@ class Sweep:
         Raises
         ------
         HolonomError
-            Matplotlib is not installed; there are not one or two parameters in rows and columns, or no such quantity.
+            Matplotlib is not installed. There are not one or two parameters in rows and columns, or no such quantity.
         """
         from ..figures.style import Picture
         from ..figures.sweep import sweep_figure

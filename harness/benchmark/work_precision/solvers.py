@@ -28,7 +28,7 @@ class RightHandSide:
     Parameters
     ----------
     accelerations : callable
-        A function of ctypes, of two addresses: t, q, dot q and what else it takes, of which it makes no use; ddot q.
+        A function of ctypes, of the addresses of its arguments (t, q, dot q, and unused inputs) and of ddot q.
     inputs : int
         How many numbers it takes.
     """

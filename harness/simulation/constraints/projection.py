@@ -1,7 +1,7 @@
 """Projection onto the constraints in the mass metric.
 
 The nearest state is found as in Garcia de Jalon & Bayo, section 5.3. Positions by Newton's method: the least d with J d
-= -f, until d is rounding; then velocities, in one linear step: the least e with J e = -df/dt. Constraints may be
+= -f, until d is rounding. Then velocities, in one linear step: the least e with J e = -df/dt. Constraints may be
 dependent, since the rank is used.
 """
 

@@ -6,7 +6,7 @@ The projection program gives the least d and e, in the mass metric, with J d = -
     GGL:        d/dt q = v + gamma d,  d/dt v = a + gamma e,
 
 where f obeys f'' + 2 gamma f' + gamma^2 f = 0 in the first, and f and df/dt die out like exp(-gamma t) in the second.
-Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1; Gear, Gupta & Leimkuhler, J. Comput. Appl. Math. 12 (1985) 77,
+Baumgarte, Comput. Methods Appl. Mech. Eng. 1 (1972) 1. Gear, Gupta & Leimkuhler, J. Comput. Appl. Math. 12 (1985) 77,
 whose multipliers mu and nu, d = A^-1 J^T mu and e = A^-1 J^T nu, act here through a rate instead of for ever.
 """
 
