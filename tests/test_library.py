@@ -107,6 +107,19 @@ def test_every_file_of_the_library_has_its_place_in_the_load_list():
     assert {file for file in files - apart if not file.startswith("paper/")} == set(layers())
 
 
+def test_a_header_states_arguments_and_results():
+    """Takes and Returns, or each function with its arguments. The other files are constants and load lists."""
+    apart = {"algebra/tolerances.mac", "holonom.mac", "paper/errata.mac", "paper/paper.mac"}
+    lacking = set()
+    for file in LIBRARY.rglob("*.mac"):
+        header, code = file.read_text(encoding="utf-8").split("*/", 1)
+        functions = re.findall(r"^(\w+)\(", code, re.MULTILINE)
+        named = any(re.search(rf"\b{name}\(", header) for name in functions)
+        if not named and not re.search(r"^ +Returns: |returns", header, re.MULTILINE):
+            lacking.add(file.relative_to(LIBRARY).as_posix())
+    assert lacking == apart
+
+
 def test_the_steps_take_lists_and_matrices_and_no_structures():
     for file in sorted((LIBRARY / "derivation").glob("*.mac")):
         code = re.sub(r"/\*.*?\*/|\"[^\"]*\"", "", file.read_text(), flags=re.DOTALL)
