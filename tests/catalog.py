@@ -12,6 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import IO, Any
 
+import yaml
 from babel.messages.catalog import Catalog, Message
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
@@ -20,6 +21,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 import holonom
+from holonom.companion.chapter import FENCE
 from holonom.companion.pages import WHITESPACE
 from holonom.files import shared, write_whole
 from holonom.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, catalog_file
@@ -169,7 +171,9 @@ def _in_markdown(
 ) -> Found:
     """The messages in the pieces of templates within a page of the book or the manual."""
     text = file.read().decode()
-    pieces = [*SHOWN.findall(text), *(f"{{{{ {value} }}}}" for value in VALUE.findall(text))]
+    head = {} if (begin := text.split(FENCE, 2))[0] else yaml.safe_load(begin[1])
+    values = [*head.get("values", {}).values(), *head.get("figures", {}).values(), *VALUE.findall(text)]
+    pieces = [*SHOWN.findall(text), *(f"{{{{ {value} }}}}" for value in values)]
     template = io.BytesIO("\n".join(pieces).encode())
     yield from babel_extract(template, keywords, tags, {**options, "extensions": "jinja2.ext.i18n"})
 

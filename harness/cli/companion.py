@@ -62,8 +62,8 @@ def companion(
     Without a SCENE, make the textbook companion of the paper, otherwise pages about each SCENE.
     """
     require_extras()
+    from ..companion.chapter import chapters_of_the_paper
     from ..companion.own_scenes import chapters_of_scenes
-    from ..companion.paper import chapters_of_the_paper
     from ..companion.site import make_site
     from ..display.progress import progress
     from .console import make_console

@@ -91,6 +91,22 @@ def scene_cards(
     return _cards(numbers, instances, tuple(printed), _is_controlled(scenes[0][0]), prefix)
 
 
+def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
+    """Return cards by their anchors.
+
+    Parameters
+    ----------
+    cards : iterable of Card
+        Cards of a page.
+
+    Returns
+    -------
+    dict of str to Card
+        Cards by anchor.
+    """
+    return {card.anchor: card for card in cards}
+
+
 def cards_of_scene(found: FileAnswers, numbers: Sequence[str], scene: str) -> list[Card]:
     """Return cards of a scene's equations, none for prescribed reactions.
 

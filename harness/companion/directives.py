@@ -14,7 +14,7 @@ from typing import Any
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
 from docutils import nodes
-from markupsafe import Markup
+from markupsafe import Markup, escape
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
@@ -24,40 +24,21 @@ from sphinx.writers.html5 import HTML5Translator
 
 from ..language import ENGLISH, LANGUAGES, catalog_file, gettext
 from ..typeset.mathml import inline_mathml, mathml
-from .chapter import Run
+from .chapter import chapters_of_the_paper
 from .chapters import EXAMPLES
 from .finish import EQUATION, with_columns, with_equations
 from .fonts import mathematics_font
-from .paper import chapters_of_the_paper
+from .runs import Run
 from .sessions import answers_of
 from .shelf import Shelf
 from .stored_results import digest_of_all
 
 GRADES = 3
+APART, FIGURE = "apart", "run-figure"  # classes of nodes until a page is read, with its translations
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".kept"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of results of runs, in the folder of the pages
-
-
-class shown(nodes.General, nodes.Element):
-    """HTML that a run has made."""
-
-
-class inline_shown(nodes.Inline, nodes.Element):
-    """HTML within a line."""
-
-
-class run_figure(nodes.General, nodes.Element):
-    """A figure: its first child is the alternative text, the others the caption."""
-
-
-class exercise(nodes.General, nodes.Element):
-    """A question and its answer."""
-
-
-class answer(nodes.General, nodes.Element):
-    """An answer, folded."""
 
 
 class Show(SphinxDirective):
@@ -76,7 +57,7 @@ class Show(SphinxDirective):
         template = "\n".join(self.content) or f"{{{{ {self.arguments[0]} }}}}"
         html = _rendered(self.env, template)
         _equations(self.env).setdefault(self.env.docname, []).extend(EQUATION.findall(html))
-        return [shown("", html=html)]
+        return [_html(html)]
 
 
 class Value(SphinxRole):
@@ -90,8 +71,7 @@ class Value(SphinxRole):
         tuple of two lists
             Nodes, and messages of the system.
         """
-        html = _rendered(self.env, f"{{{{ {self.text} }}}}")
-        return [inline_shown("", nodes.Text(Markup(html).striptags()), html=html)], []
+        return [_html(_rendered(self.env, f"{{{{ {self.text} }}}}"))], []
 
 
 class Definition(SphinxRole):
@@ -159,9 +139,8 @@ class When(SphinxDirective):
             Nodes of the page.
         """
         condition = f"{{{{ 1 if {self.arguments[0]} else '' }}}}"
-        if self.env.temp_data[SHELF] is None or _rendered(self.env, condition):
-            return self.parse_content_to_nodes()
-        return []
+        holds = self.env.temp_data[SHELF] is None or _rendered(self.env, condition)
+        return self.parse_content_to_nodes() if holds else []
 
 
 class RunFigure(SphinxDirective):
@@ -177,9 +156,7 @@ class RunFigure(SphinxDirective):
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        return [
-            run_figure("", *self.parse_content_to_nodes(), name=self.arguments[0], ids=[f"fig-{self.arguments[0]}"])
-        ]
+        return [nodes.container("", *self.parse_content_to_nodes(), classes=[FIGURE], figure=self.arguments[0])]
 
 
 class Exercise(SphinxDirective):
@@ -195,11 +172,17 @@ class Exercise(SphinxDirective):
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        return [exercise("", *self.parse_content_to_nodes(), grade=int(self.arguments[0]))]
+        number, grade = 1 + self.env.new_serialno("exercise"), int(self.arguments[0])
+        label = (gettext("easy"), gettext("middling"), gettext("hard"))[grade - 1]
+        begin = (
+            f'<div class="exercise" id="exercise-{number}"><a class="number" href="#answer-{number}">{number}</a> '
+            f'<span class="grade" role="img" aria-label="{label}">{"●" * grade + "○" * (GRADES - grade)}</span>'
+        )
+        return [_html(begin), *self.parse_content_to_nodes(), _html("</div>")]
 
 
 class Answer(SphinxDirective):
-    """An answer."""
+    """An answer, folded."""
 
     has_content = True
 
@@ -211,20 +194,39 @@ class Answer(SphinxDirective):
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        return [answer("", *self.parse_content_to_nodes())]
+        number = 1 + self.env.new_serialno("answer")
+        begin = f'<details id="answer-{number}"><summary>{gettext("Answer")} {number}</summary><div class="answer">'
+        parts = _html(begin), *self.parse_content_to_nodes(), _html("</div></details>")
+        return [nodes.container("", *parts, classes=[APART])]
+
+
+def _html(text: str) -> nodes.raw:
+    """Return HTML as a node."""
+    return nodes.raw("", text, format="html")
+
+
+def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
+    """Put the picture of each figure before its caption, with the first paragraph as its alternative text."""
+    for found in _containers(tree, FIGURE):
+        name, (words, *caption) = found["figure"], found.children
+        file, text = f'"figures/{name}.svg"', escape(Markup(words.astext()).striptags())
+        begin = f'<figure id="fig-{name}"><a href={file}><img src={file} alt="{text}" /></a><figcaption>'
+        found.replace_self([_html(begin), *caption, _html("</figcaption></figure>")])
 
 
 def _put_answers_apart(app: Sphinx, tree: nodes.document) -> None:
-    """Collect the numbered answers of a page in a section at its end."""
-    answers = nodes.section("", nodes.title("", gettext("Answers")), ids=["answers"])
-    for number, question in enumerate(tree.findall(exercise), 1):
-        question["number"] = number
-        for found in list(question.findall(answer)):
-            found["number"] = number
-            found.parent.remove(found)
-            answers += found
-    if len(answers) > 1:
-        next(tree.findall(nodes.section)).append(answers)
+    """Move the answers of a page to a section at its end."""
+    section = nodes.section("", nodes.title("", gettext("Answers")), ids=["answers"])
+    for found in _containers(tree, APART):
+        found.parent.remove(found)
+        section += found.children
+    if len(section) > 1:
+        next(tree.findall(nodes.section)).append(section)
+
+
+def _containers(tree: nodes.document, kind: str) -> list[nodes.container]:
+    """Return the containers of a class."""
+    return [each for each in tree.findall(nodes.container) if kind in each["classes"]]
 
 
 def _collecting(app: Sphinx) -> bool:
@@ -263,60 +265,6 @@ def _up(name: str) -> str:
     return "../" * name.count("/")
 
 
-def _within(translator: HTML5Translator, html: str) -> str:
-    """Return HTML with its links as they are from the page that is written."""
-    return html.replace('="figures/', f'="{_up(translator.builder.current_docname)}{FILES}/')
-
-
-def _visit_shown(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Write HTML as it is."""
-    translator.body.append(_within(translator, node["html"]))
-    raise nodes.SkipNode
-
-
-def _visit_run_figure(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Write the picture, before its caption."""
-    alternative = translator.attval(node.pop(0).astext())
-    file = _within(translator, f'="figures/{node["name"]}.svg"')
-    translator.body.append(
-        f'<figure id="{node["ids"][0]}"><a href{file}><img src{file} alt="{alternative}" /></a><figcaption>'
-    )
-
-
-def _depart_run_figure(translator: HTML5Translator, node: nodes.Element) -> None:
-    """End the caption."""
-    translator.body.append("</figcaption></figure>\n")
-
-
-def _visit_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Begin a question."""
-    number, grade = node["number"], node["grade"]
-    label = [gettext("easy"), gettext("middling"), gettext("hard")][grade - 1]
-    marks = "●" * grade + "○" * (GRADES - grade)
-    translator.body.append(
-        f'<div class="exercise" id="exercise-{number}"><a class="number" href="#answer-{number}">{number}</a> '
-        f'<span class="grade" role="img" aria-label="{label}">{marks}</span>'
-    )
-
-
-def _visit_answer(translator: HTML5Translator, node: nodes.Element) -> None:
-    """Begin an answer."""
-    number = node["number"]
-    translator.body.append(
-        f'<details id="answer-{number}"><summary>{gettext("Answer")} {number}</summary><div class="answer">'
-    )
-
-
-def _depart_exercise(translator: HTML5Translator, node: nodes.Element) -> None:
-    """End a question."""
-    translator.body.append("</div>\n")
-
-
-def _depart_answer(translator: HTML5Translator, node: nodes.Element) -> None:
-    """End an answer."""
-    translator.body.append("</div></details>\n")
-
-
 def _visit_math(translator: HTML5Translator, node: nodes.math) -> None:
     """Write a formula within a line."""
     translator.body.append(inline_mathml(node.astext()))
@@ -343,7 +291,7 @@ def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[
     env.holonom_program = now
     shelf = _shelf_of(app)
     same = before == now and shelf.result_folder is not None
-    return [] if same else [name for name in env.found_docs if shelf.chapter(name)]
+    return [] if same else [name for name in env.found_docs if shelf.chapter(name).runs]
 
 
 def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
@@ -356,7 +304,8 @@ def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any],
     partners = context.get("folders", {}).items()
     context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
     if "body" in context and app.builder.name == "html":
-        context["body"] = with_columns(with_equations(context["body"], _places_from(app, name)))
+        body = context["body"].replace('="figures/', f'="{_up(name)}{FILES}/')
+        context["body"] = with_columns(with_equations(body, _places_from(app, name)))
 
 
 def _places_from(app: Sphinx, name: str) -> dict[str, str]:
@@ -374,6 +323,8 @@ def _places_from(app: Sphinx, name: str) -> dict[str, str]:
 def _put_font(app: Sphinx) -> None:
     """Copy the font of formulas to the folder of the pages."""
     files = Path(app.outdir) / FILES
+    if (files / "mathematics.txt").exists():
+        return
     logging.getLogger("fontTools").setLevel(logging.WARNING)
     font, notice = mathematics_font()
     files.mkdir(parents=True, exist_ok=True)
@@ -433,13 +384,9 @@ def setup(app: Sphinx) -> dict[str, bool]:
         app.add_directive(name, directive)
     app.add_role("value", Value())
     app.add_role("dfn", Definition(), override=True)
-    app.add_node(shown, html=(_visit_shown, None))
-    app.add_node(inline_shown, html=(_visit_shown, None))
-    app.add_node(run_figure, html=(_visit_run_figure, _depart_run_figure))
-    app.add_node(exercise, html=(_visit_exercise, _depart_exercise))
-    app.add_node(answer, html=(_visit_answer, _depart_answer))
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
     for event, function in EVENTS.items():
         app.connect(event, function)
+    app.connect("doctree-read", _finish_figures)
     app.connect("doctree-read", _put_answers_apart, priority=400)  # before the contents are collected
     return {"parallel_read_safe": False, "parallel_write_safe": True}

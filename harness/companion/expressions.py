@@ -3,9 +3,12 @@
 from collections.abc import Mapping
 
 import sympy
-from sympy import Expr, Symbol
+from sympy import Expr, Symbol, simplify
 
 from ..mathjson import Tree, to_sympy
+from ..record import Equation
+
+RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its rates
 
 
 def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
@@ -27,7 +30,7 @@ def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
     for control, value in law.items():
         for order, name in enumerate((control, f"dot({control})", f"ddot({control})")):
             expression = expression.subs(Symbol(name, real=True), value.diff(time, order))
-    return sympy.factor(sympy.simplify(expression))
+    return sympy.factor(simplify(expression))
 
 
 def right_side(tree: Tree) -> Expr:
@@ -72,3 +75,42 @@ def zeros(expression: Expr) -> list[Expr]:
     """
     (symbol,) = expression.free_symbols
     return sympy.solve(expression.subs(symbol, sympy.Dummy()))
+
+
+def in_sum(expression: Expr) -> Expr:
+    """Return an expression of the example in terms of S = q1 + q2.
+
+    Parameters
+    ----------
+    expression : Expr
+        SymPy expression.
+
+    Returns
+    -------
+    Expr
+        Expression in S.
+    """
+    replaced = {
+        Symbol(name("q2"), real=True): Symbol(name("S"), real=True) - Symbol(name("q1"), real=True) for name in RATES
+    }
+    found = simplify(expression.subs(replaced))
+    return sympy.collect(
+        sympy.expand(sympy.numer(found)), [Symbol(name("S"), real=True) for name in RATES]
+    ) / sympy.factor(sympy.denom(found))
+
+
+def sum_acceleration(equations: Mapping[str, Equation]) -> Expr:
+    """Return the acceleration of S = q1 + q2 with its multiplier, in terms of S.
+
+    Parameters
+    ----------
+    equations : mapping of str to Equation
+        Equations of the example by id.
+
+    Returns
+    -------
+    Expr
+        Acceleration.
+    """
+    first, second = (relation.right for relation in equations["driven_accelerations"].relations[:2])
+    return sympy.collect(in_sum(sympy.expand(first + second)), Symbol("lambda1", real=True))

@@ -15,7 +15,6 @@ from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report, Simulation
 from ..simulation.simulate import simulate
-from .chapter import Run
 from .runs import DEFAULT_LIMITS, NO_SETTINGS, FailedRun, Settings, drawn, names_of_scenes, or_failure
 
 SAMPLES = 1801
@@ -39,8 +38,14 @@ class Motion:
         return self.simulation.report
 
 
-def motion(file: Path, scene: str | None = None, until: Fraction | None = None) -> Run:
-    """Return the pictures of a scene's motion, a `Motion`.
+def motion(
+    file: Path,
+    scene: str | None = None,
+    until: Fraction | None = None,
+    settings: Settings = NO_SETTINGS,
+    limits: Limits = DEFAULT_LIMITS,
+) -> Motion:
+    """Simulate a scene to a time, by default to the end of its time span.
 
     Parameters
     ----------
@@ -50,17 +55,29 @@ def motion(file: Path, scene: str | None = None, until: Fraction | None = None) 
         Name of the scene.
     until : Fraction or None
         Last time, or None for that of the scene.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
 
     Returns
     -------
-    Run
-        Run with the result `Motion`.
+    Motion
+        The motion and its pictures.
+
+    Raises
+    ------
+    HolonomError
+        The motion has no end, or cannot be continued to it.
     """
-    return Run(_simulate, (file, scene, until, NO_SETTINGS, DEFAULT_LIMITS))
+    problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
+    simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
+    film = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
+    return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
 
 
-def motions(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return pictures of all motions of a file: by scene, a `Motion` or `FailedRun`.
+def motions(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | FailedRun]:
+    """Simulate every scene of a file.
 
     Parameters
     ----------
@@ -73,30 +90,11 @@ def motions(file: Path, settings: Settings, limits: Limits) -> Run:
 
     Returns
     -------
-    Run
-        Run with the results by scene.
+    dict of str to Motion or FailedRun
+        Motions by scene.
     """
-    return Run(_simulate_all, (file, settings, limits))
-
-
-def _simulate_all(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | FailedRun]:
-    """Follow every scene of a file."""
     names = names_of_scenes(file, settings, limits)
-    return {name: or_failure(_simulate, file, name, None, settings, limits) for name in names}
-
-
-def _simulate(file: Path, scene: str | None, until: Fraction | None, settings: Settings, limits: Limits) -> Motion:
-    """Simulate a scene to a time, by default to the end of its time span.
-
-    Raises
-    ------
-    HolonomError
-        The motion has no end, or cannot be continued to it.
-    """
-    problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
-    simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
-    film = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
-    return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
+    return {name: or_failure(motion, file, name, None, settings, limits) for name in names}
 
 
 def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
@@ -114,7 +112,7 @@ def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
     """
     files: dict[str, str] = {}
     for name, found in motions:
-        files[f"{name}-curves"] = drawn(partial(draw_motion, found.simulation))
+        files[f"{name}-curves.svg"] = drawn(partial(draw_motion, found.simulation))
         if found.film:
-            files |= {f"{name}-moving": animation(found.film), f"{name}-still": strip(found.film)}
+            files |= {f"{name}-moving.svg": animation(found.film), f"{name}-still.svg": strip(found.film)}
     return files

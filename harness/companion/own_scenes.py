@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from ..sandbox import Limits
-from .chapter import Chapter, Page
+from .chapter import FILES, Chapter
 from .motions import Motion, figures_of, motions
-from .runs import Settings, study
+from .runs import Run, Settings, study
 
 TEXTS = Path(__file__).with_name("own")
 PAGES = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
@@ -44,8 +44,8 @@ def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits
     """
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
-        asked = study(file, settings, limits)
-        runs = {"study": asked, "motions": motions(*asked.arguments)}
+        asked = file, settings, limits
+        runs = {"study": Run(study, asked), "motions": Run(motions, asked)}
         found |= {f"{prefix}{name}": Chapter(runs, partial(_page, prefix, file, name == "motion")) for name in PAGES}
     return found
 
@@ -80,9 +80,9 @@ def _prefix(file: Path, place: int) -> str:
     return f"{place}-{re.sub(r'[^a-z0-9]+', '-', file.stem.lower())}-"
 
 
-def _page(prefix: str, file: Path, drawn: bool, results: Mapping[str, Any]) -> Page:
+def _page(prefix: str, file: Path, drawn: bool, results: Mapping[str, Any]) -> dict[str, Any]:
     """Return the content of a page of a file, with the drawings of its motions."""
     names = {name: f"{prefix}scene-{place}" for place, name in enumerate(results["motions"], 1)}
     shown = [(names[name], found) for name, found in results["motions"].items() if isinstance(found, Motion)]
     text = file.read_text(encoding="utf-8", errors="replace")
-    return Page({"figures": names, "file": file.name, "text": text}, figures_of(shown) if drawn else {})
+    return {"figures": names, "file": file.name, "text": text, FILES: figures_of(shown) if drawn else {}}

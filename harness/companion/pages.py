@@ -3,26 +3,30 @@
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
+from inspect import isfunction
 
 import jinja2
+import numpy as np
 from markupsafe import Markup, escape
+from numpy.typing import NDArray
 from sympy import Expr
 
-from ..explanations import advice, engine_text, notes
+from ..explanations import advice, engine_text, notes  # noqa: F401
+from ..figures import curves, motion
 from ..files import shared
 from ..free_motion import UniversalLaw
 from ..language import gettext, ngettext, translated
 from ..number_texts import number
 from ..record import Scene
-from . import TEMPLATES, mathematics, table
-from .cards import Card, cards_of_scene, derivation_cards, missing, named_equations, scene_named
-from .excerpts import excerpt
+from . import TEMPLATES, cards, excerpts, expressions, mathematics, power, table, tilted_plane
+from .cards import Card
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
 NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
+MODULES = (cards, curves, excerpts, expressions, mathematics, motion, power, tilted_plane)
 MACROS = ("cards.html", "answers.html", "motions.html", "tables.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
@@ -30,6 +34,8 @@ WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline
 @cache
 def environment(language: str) -> jinja2.Environment:
     """Return the environment of the templates with its macros, one per language.
+
+    The functions of this module and of `MODULES` are known by their names, as filters and as functions.
 
     Parameters
     ----------
@@ -48,55 +54,12 @@ def environment(language: str) -> jinja2.Environment:
         extensions=["jinja2.ext.i18n"],
         **WHITESPACE,
     )
+    named = [pair for module in MODULES for pair in vars(module).items()] + [*globals().items()]
+    functions = {name.removeprefix("_"): each for name, each in named if isfunction(each)}
+    environment.filters = functions | environment.filters
+    environment.globals |= functions | {"Panel": curves.Panel, "language": language}
+    environment.globals["in_repository"] = shared("tests").is_dir()
     environment.install_gettext_callables(gettext, ngettext)
-    environment.filters |= {
-        "prose": mathematics.prose,
-        "typeset": mathematics.typeset,
-        "nothing_to_show": mathematics.nothing_to_show,
-        "as_printed": mathematics.as_printed,
-        "as_corrected": mathematics.as_corrected,
-        "expression": mathematics.expression,
-        "difference": mathematics.difference,
-        "sentence": _sentence,
-        "rounded": _rounded,
-        "power_of_ten": _power_of_ten,
-        "with_code": _with_code,
-        "css_string": _css_string,
-        "counted": _counted,
-        "translated": translated,
-        "continued": _continued,
-        "equalities": _equalities,
-        "each_equality": _each_equality,
-        "numbers_of": _numbers_of,
-        "symbols": _symbols,
-        "emphasized": _emphasized,
-        "both": _both,
-        "law_text": _law_text,
-        "advice": advice,
-        "engine_text": engine_text,
-        "notes": notes,
-        "complex_numbers": _complex_numbers,
-        "coefficient": _coefficient,
-        "symbol": mathematics.symbol,
-        "maxima_text": _maxima_text,
-    }
-    environment.globals |= {
-        "language": language,
-        "in_repository": shared("tests").is_dir(),
-        "tex": mathematics.tex,
-        "equality": mathematics.equality,
-        "display": mathematics.display,
-        "display_named": mathematics.display_named,
-        "display_expression": mathematics.display_expression,
-        "description": mathematics.description,
-        "derivation_cards": derivation_cards,
-        "cards": cards_of_scene,
-        "missing": missing,
-        "named_equations": named_equations,
-        "scene_named": scene_named,
-        "excerpt": excerpt,
-        "words_of": _words_of,
-    }
     for library in MACROS:
         macros = environment.get_template(library).module
         environment.globals |= {name: macro for name, macro in vars(macros).items() if not name.startswith("_")}
@@ -159,6 +122,10 @@ def _law_text(law: UniversalLaw) -> Markup:
         conditions = _both(mathematics.expression(each) + " " + mathematics.tex("> 0") for each in law.positive)
         text = Markup(gettext("%(law)s, where %(conditions)s")) % {"law": text, "conditions": conditions}
     return text
+
+
+def _columns(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
+    return np.array(rows, dtype=float).T
 
 
 def _rounded(value: float, digits: int = 6) -> str:

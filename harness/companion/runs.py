@@ -15,28 +15,40 @@ from typing import Any
 
 from ..crosscheck.check import check_record
 from ..crosscheck.report import CheckReport
-from ..errata import errata
+from ..errata import errata  # noqa: F401, for the heads of pages
 from ..failures import ErrorKind, HolonomError
 from ..free_motion import FreeMotion, free_motion
 from ..processes import die_with_parent
+from ..program.effects import MeasuredCosts, scene_costs
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..record import Record, derived_record
 from ..sandbox import Limits
+from ..scene import load
 from ..series.compute import compute_series
 from ..series.power_series import MotionSeries
 from ..series.request import SeriesRequest
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
+from ..simulation.simulate import simulate
 from ..source import Source, describe
+from ..stability.along import LinearizedMotion
+from ..stability.linearization import Linearization
 from ..temporary import private_directory
-from .chapter import Run
 
 WORKERS = 2
 Settings = tuple[tuple[str, str], ...]
 NO_SETTINGS: Settings = ()
 OWN_ORDER = 40  # of the series of a reader's scenes
 DEFAULT_LIMITS = Limits()
+
+
+@dataclass(frozen=True)
+class Run:
+    """A computation that chapters share. Equal runs are performed once."""
+
+    compute: Callable[..., Any]  # a function of a module, for it may be called in another process
+    arguments: tuple[Any, ...] = ()  # what it is given; hashable
 
 
 @dataclass(frozen=True)
@@ -77,8 +89,8 @@ class FileAnswers:
         return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
 
 
-def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Run:
-    """Return the derivation of a scene file, cross-checked: a `Derived`.
+def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Derived:
+    """Return the derivation of a scene file, cross-checked.
 
     Parameters
     ----------
@@ -91,27 +103,18 @@ def derived(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAU
 
     Returns
     -------
-    Run
-        Run with the result `Derived`.
+    Derived
+        Record and verdicts.
     """
-    return Run(_derive, (file, settings, limits))
-
-
-def printed() -> Run:
-    """Return the comparison of the printed paper: a tuple of `PrintedEquation`.
-
-    Returns
-    -------
-    Run
-        Run with the printed equations.
-    """
-    return Run(errata)
+    source = Source(file, limits)
+    record = derived_record(source, dict(settings), limits)
+    return Derived(record, check_record(record, source.description(dict(settings))))
 
 
 def free(
     file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
-) -> Run:
-    """Return the free motion of a scene: a `FreeMotion`.
+) -> FreeMotion:
+    """Return the free motion of a scene.
 
     Parameters
     ----------
@@ -126,10 +129,10 @@ def free(
 
     Returns
     -------
-    Run
-        Run with the result `FreeMotion`.
+    FreeMotion
+        Free motion.
     """
-    return Run(_free, (file, scene, settings, limits))
+    return free_motion(file, scene, dict(settings), limits)
 
 
 def series(
@@ -139,8 +142,8 @@ def series(
     settings: Settings = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
     sensitivities: tuple[str, ...] = (),
-) -> Run:
-    """Return the power series of a scene's motion: a `MotionSeries`.
+) -> MotionSeries:
+    """Return the power series of a scene's motion, with its radius of convergence.
 
     Parameters
     ----------
@@ -159,16 +162,23 @@ def series(
 
     Returns
     -------
-    Run
-        Run with the result `MotionSeries`.
+    MotionSeries
+        Power series.
     """
-    return Run(_series, (file, scene, order, settings, limits, sensitivities))
+    request = SeriesRequest(order, scene, settings=dict(settings), sensitivities=sensitivities)
+    motion = compute_series(file, request, limits)
+    motion.radius  # noqa: B018
+    return motion
 
 
 def simulation(
-    file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings = NO_SETTINGS
-) -> Run:
-    """Return a scene's motion through its time span or to a time, a `Simulation`.
+    file: Path,
+    scene: str | None,
+    until: Fraction | None = None,
+    samples: int | None = None,
+    settings: Settings = NO_SETTINGS,
+) -> Simulation:
+    """Return a scene's motion through its time span or to a time.
 
     Parameters
     ----------
@@ -185,14 +195,75 @@ def simulation(
 
     Returns
     -------
-    Run
-        Run with the result `Simulation`.
+    Simulation
+        Simulated motion.
     """
-    return Run(_simulate, (file, scene, until, samples, settings))
+    problem = motion_problem(file, Request(scene, settings=dict(settings)), DEFAULT_LIMITS)
+    return simulate(problem, SimulationRequest(until=until, samples=samples))
 
 
-def study(file: Path, settings: Settings, limits: Limits) -> Run:
-    """Return all answers about a scene file, a `FileAnswers`.
+def linearized(file: Path, scene: str, at: int) -> Linearization:
+    """Return the linear system about a motion at a time.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+    at : int
+        Time.
+
+    Returns
+    -------
+    Linearization
+        Linear system as `holonom linearize` finds it.
+    """
+    return load(file, scene=scene).linearize(at=at)
+
+
+def linearized_along(file: Path, scene: str, until: int, samples: int) -> LinearizedMotion:
+    """Return the linear system along a motion.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+    until : int
+        Last time.
+    samples : int
+        Number of times.
+
+    Returns
+    -------
+    LinearizedMotion
+        Linear system as `holonom linearize-along` finds it.
+    """
+    return load(file, scene=scene).linearize_along(until=until, samples=samples)
+
+
+def effects(file: Path, scene: str) -> MeasuredCosts:
+    """Return the costs of the effects of a scene.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    MeasuredCosts
+        Costs as `holonom effects` reports them.
+    """
+    return scene_costs(file, Request(scene), DEFAULT_LIMITS)
+
+
+def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
+    """Return all answers about a scene file.
 
     Parameters
     ----------
@@ -205,10 +276,15 @@ def study(file: Path, settings: Settings, limits: Limits) -> Run:
 
     Returns
     -------
-    Run
-        Run with the result `FileAnswers`.
+    FileAnswers
+        Derivation, and free motion and series by scene.
     """
-    return Run(_study, (file, settings, limits))
+    names = names_of_scenes(file, settings, limits)
+    return FileAnswers(
+        derive(file, settings, limits),
+        {name: or_failure(free, file, name, settings, limits) for name in names},
+        {name: or_failure(series, file, name, OWN_ORDER, settings, limits) for name in names},
+    )
 
 
 def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
@@ -241,34 +317,6 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
     return results
 
 
-def _derive(file: Path, settings: Settings, limits: Limits) -> Derived:
-    source = Source(file, limits)
-    record = derived_record(source, dict(settings), limits)
-    return Derived(record, check_record(record, source.description(dict(settings))))
-
-
-def _free(file: Path, scene: str | None, settings: Settings, limits: Limits) -> FreeMotion:
-    return free_motion(file, scene, dict(settings), limits)
-
-
-def _series(
-    file: Path, scene: str | None, order: int, settings: Settings, limits: Limits, sensitivities: tuple[str, ...] = ()
-) -> MotionSeries:
-    request = SeriesRequest(order, scene, settings=dict(settings), sensitivities=sensitivities)
-    motion = compute_series(file, request, limits)
-    motion.radius  # noqa: B018
-    return motion
-
-
-def _simulate(
-    file: Path, scene: str | None, until: Fraction | None, samples: int | None, settings: Settings
-) -> Simulation:
-    from ..simulation.simulate import simulate
-
-    problem = motion_problem(file, Request(scene, settings=dict(settings)), DEFAULT_LIMITS)
-    return simulate(problem, SimulationRequest(until=until, samples=samples))
-
-
 def drawn(draw: Callable[[Path], None]) -> str:
     """Return the text of the SVG document that a function writes to a file.
 
@@ -286,16 +334,6 @@ def drawn(draw: Callable[[Path], None]) -> str:
         file = directory / "figure.svg"
         draw(file)
         return file.read_text(encoding="utf-8")
-
-
-def _study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
-    found = _derive(file, settings, limits)
-    names = names_of_scenes(file, settings, limits)
-    return FileAnswers(
-        found,
-        {name: or_failure(_free, file, name, settings, limits) for name in names},
-        {name: or_failure(_series, file, name, OWN_ORDER, settings, limits) for name in names},
-    )
 
 
 def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:

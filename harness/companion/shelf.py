@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from ..files import write_whole
-from ..language import speaking
-from .chapter import Chapter, Page, Run
+from .chapter import FILES, Chapter
 from .pages import environment
-from .runs import perform
+from .runs import Run, perform
 from .stored_results import results_of
 
 
@@ -41,15 +40,10 @@ class Shelf:
         results: dict[Run, Any] | None = None,
         done: Callable[[], None] = lambda: None,
     ) -> None:
-        self.chapters, self.language, self.files, self.result_folder, self.done = (
-            chapters,
-            language,
-            files,
-            result_folder,
-            done,
-        )
+        self.chapters, self.language, self.files = chapters, language, files
+        self.result_folder, self.done = result_folder, done
         self.results = {} if results is None else results
-        self.pages: dict[str, Page] = {}
+        self.known: dict[str, Mapping[str, Any]] = {}
 
     def perform(self, names: Iterable[str]) -> None:
         """Have the results of the runs that pages take.
@@ -59,12 +53,12 @@ class Shelf:
         names : iterable of str
             Names of the pages.
         """
-        wanted = [run for name in names if (chapter := self.chapter(name)) for run in chapter.runs.values()]
+        wanted = [run for name in names for run in self.chapter(name).runs.values()]
         missing = [run for run in wanted if run not in self.results]
         self.results.update(results_of(missing, self.result_folder, partial(perform, done=self.done)))
 
-    def chapter(self, name: str) -> Chapter | None:
-        """Return the chapter of a page, where it has one.
+    def chapter(self, name: str) -> Chapter:
+        """Return the chapter of a page, one without runs by default.
 
         Parameters
         ----------
@@ -73,13 +67,13 @@ class Shelf:
 
         Returns
         -------
-        Chapter or None
-            Chapter, or None for a page without one.
+        Chapter
+            Chapter of the page.
         """
-        return self.chapters.get(name.rpartition("/")[2])
+        return self.chapters.get(name.rpartition("/")[2], Chapter())
 
-    def page(self, name: str) -> Page:
-        """Return the results of the chapter of a page, and write its files.
+    def values(self, name: str) -> Mapping[str, Any]:
+        """Return the results of a page's runs and what its chapter computes of them.
 
         Parameters
         ----------
@@ -88,15 +82,21 @@ class Shelf:
 
         Returns
         -------
-        Page
-            Content and files of the page.
+        mapping of str to Any
+            Values for the templates of the page.
         """
-        if name not in self.pages:
-            self.pages[name] = made = self._made(name)
-            figures = {f"{figure}.svg": svg for figure, svg in made.figures.items()}
-            for file, text in (figures | dict(made.files)).items():
-                self._write(file, text)
-        return self.pages[name]
+        if name not in self.known:
+            chapter, known = self.chapter(name), environment(self.language)
+            found = {each: self.results[run] for each, run in chapter.runs.items()}
+            found |= chapter.page(found)
+            for each, expression in chapter.values.items():
+                found[each] = known.compile_expression(expression)(**found)
+            figures = {f"{each}.svg": known.compile_expression(svg)(**found) for each, svg in chapter.figures.items()}
+            for file, text in (figures | found.get(FILES, {})).items():
+                (self.files / file).parent.mkdir(parents=True, exist_ok=True)
+                write_whole(self.files / file, text)
+            self.known[name] = found
+        return self.known[name]
 
     def rendered(self, name: str, template: str) -> str:
         """Return a piece of a page, rendered with the results of its chapter.
@@ -113,10 +113,7 @@ class Shelf:
         str
             HTML.
         """
-        with speaking(self.language):
-            page, chapter = self.page(name), self.chapter(name)
-            known = {each: self.results[run] for each, run in chapter.runs.items()} if chapter else {}
-            return str(environment(self.language).from_string(template).render(known | dict(page.content))).strip()
+        return str(environment(self.language).from_string(template).render(self.values(name))).strip()
 
     def result(self, run: Run) -> Any:
         """Return the result of a run, performed in this process unless it is known.
@@ -136,14 +133,3 @@ class Shelf:
                 [run], self.result_folder, lambda runs: {each: each.compute(*each.arguments) for each in runs}
             )
         return self.results[run]
-
-    def _write(self, name: str, text: str) -> None:
-        (self.files / name).parent.mkdir(parents=True, exist_ok=True)
-        write_whole(self.files / name, text)
-
-    def _made(self, name: str) -> Page:
-        chapter = self.chapter(name)
-        if chapter is None:
-            return Page()
-        with speaking(self.language):
-            return chapter.page({each: self.results[run] for each, run in chapter.runs.items()})

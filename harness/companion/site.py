@@ -1,6 +1,7 @@
 """Build the pages of book and manual, or of scene files, with Sphinx."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +13,13 @@ from sphinx.util.docutils import docutils_namespace, patch_docutils
 from ..failures import ErrorKind, HolonomError
 from ..files import write_whole_directory
 from ..language import gettext, speaking
-from .chapter import Chapter, Run
+from .chapter import SOURCES, Chapter
 from .directives import FILES, RESULTS
 from .own_scenes import texts_of_scenes
 from .printing import browser, print_site
+from .runs import Run
 from .shelf import Shelf
 
-SOURCES = Path(__file__).parent
 SPHINX = {"en": "en", "zh": "zh_CN"}  # what Sphinx calls a language
 TEXTS = ".texts"  # the folder of the content of pages about scene files
 MARK = ".doctrees"  # a folder of each directory that Sphinx has written into
@@ -67,7 +68,10 @@ def make_site(
             shelf.perform(chapters)  # where one is refused, nothing is written
         with speaking(language):
             folders = {each: _from(language, each, languages[0]) for each in languages if each != language}
-            app = build(scenes, folder, shelf, folders)
+            sources = _texts_about(scenes, folder) if scenes else SOURCES
+            title = gettext("A companion to systems of your own")
+            own = {"bibtex_bibfiles": [], "gettext_compact": "own", "html_title": title} if scenes else {}
+            app = build(sources, folder, shelf, {"html_context": {"folders": folders}} | own)
             if pdf is not None:
                 print_site(app, root, pdf if first else pdf.with_suffix(f".{language}{pdf.suffix}"))
 
@@ -77,40 +81,39 @@ def _from(language: str, other: str, first: str) -> str:
     return ("" if language == first else "../") + ("" if other == first else f"{other}/")
 
 
-def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mapping[str, str]) -> Sphinx:
+def build(sources: Path, directory: Path, shelf: Shelf, settings: Mapping[str, Any]) -> Sphinx:
     """Build pages with Sphinx, and return its application.
 
     Parameters
     ----------
-    scenes : sequence of Path
-        Scene files, empty for the book and the manual.
+    sources : Path
+        Folder of the texts.
     directory : Path
         Folder of the pages.
     shelf : Shelf
         Chapters of the build.
-    folders : mapping of str to str
-        Folder of each other language.
+    settings : mapping of str to Any
+        Settings of Sphinx other than those of ``conf.py``.
 
     Returns
     -------
     Sphinx
         Application after the build.
     """
-    settings: dict[str, Any] = {"language": SPHINX[shelf.language], "html_context": {"folders": folders}}
-    if scenes:
-        settings |= {
-            "bibtex_bibfiles": [],
-            "gettext_compact": "own",
-            "html_title": gettext("A companion to systems of your own"),
-        }
+    language = {"language": SPHINX[shelf.language]}
+    translators.clear()  # Sphinx would add the messages of this build to those of the one before
+    with _errors_about(directory), patch_docutils(SOURCES), docutils_namespace():
+        app = Sphinx(sources, SOURCES, directory, directory / ".doctrees", "html", language | settings, status=None)
+        app.holonom_shelf = shelf
+        app.build()
+    return app
+
+
+@contextmanager
+def _errors_about(directory: Path) -> Iterator[None]:
+    """Raise errors of Sphinx and of the file system as those about a directory."""
     try:
-        sources = _texts_about(scenes, directory) if scenes else SOURCES
-        translators.clear()  # Sphinx would add the messages of this build to those of the one before
-        with patch_docutils(SOURCES), docutils_namespace():
-            app = Sphinx(sources, SOURCES, directory, directory / ".doctrees", "html", settings, status=None)
-            app.holonom_shelf = shelf
-            app.build()
-        return app
+        yield
     except (OSError, SphinxError) as error:
         if isinstance(reason := getattr(error, "orig_exc", None), HolonomError):
             raise reason from None
@@ -120,8 +123,9 @@ def build(scenes: Sequence[Path], directory: Path, shelf: Shelf, folders: Mappin
 def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
     """Write the texts of the pages about scene files to a new folder. Return it."""
     folder = directory / TEXTS
-    directory.mkdir(parents=True, exist_ok=True)
-    write_whole_directory(folder, texts_of_scenes(scenes))
+    with _errors_about(directory):
+        directory.mkdir(parents=True, exist_ok=True)
+        write_whole_directory(folder, texts_of_scenes(scenes))
     return folder
 
 

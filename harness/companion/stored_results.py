@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..files import shared, write_whole
-from .chapter import Run
+from .runs import Run
 
 HARNESS = Path(__file__).parents[1]
 APART = {"cli", "companion", "display", "locale", "reference", "__pycache__"}  # folders that no result depends on

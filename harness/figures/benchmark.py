@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from ..benchmark.work_precision.study import Study
 
 
-STUDY = 11.0, 16.0  # inches
+PANEL = 5.5, 5.3  # inches
 FEW_DIGITS = 20  # digits of the hardware numbers, and a few more
 SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
@@ -45,8 +45,11 @@ PANELS = (
 )
 
 
-def draw_study(study: "Study", path: Path) -> None:
-    """Draw a study in six panels, as SVG.
+TIMES = PANELS[0], PANELS[2]
+
+
+def draw_study(study: "Study", path: Path, panels: Sequence[View] = PANELS, columns: int = 2) -> None:
+    """Draw a study in panels, as SVG.
 
     Parameters
     ----------
@@ -54,6 +57,10 @@ def draw_study(study: "Study", path: Path) -> None:
         Measurements with their scene and machine.
     path : Path
         SVG file to write.
+    panels : sequence of View
+        What is drawn, row by row.
+    columns : int
+        Number of panels in a row.
 
     Raises
     ------
@@ -61,8 +68,9 @@ def draw_study(study: "Study", path: Path) -> None:
         The file cannot be written, or Matplotlib is not installed.
     """
     with figure_style():
-        figure = new_figure(*STUDY)
-        for axes, panel in zip(figure.subplots(3, 2).flat, PANELS, strict=True):
+        rows = math.ceil(len(panels) / columns)
+        figure = new_figure(PANEL[0] * columns, PANEL[1] * rows)
+        for axes, panel in zip(figure.subplots(rows, columns, squeeze=False).flat, panels, strict=True):
             _draw_panel(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
             axes.set_title(gettext(panel.title, until=float(study.until), time=_time_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")

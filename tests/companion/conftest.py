@@ -1,5 +1,6 @@
 """The companion of the paper and one of somebody's own systems, each made once for all tests."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -7,11 +8,12 @@ from own_system import TEXTS, made
 from pages import REPOSITORY
 from shorter import SHORTER
 
+from holonom.companion.chapter import SOURCES, chapters_of_the_paper
 from holonom.companion.directives import FILES
-from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.runs import perform
 from holonom.companion.shelf import Shelf
 from holonom.companion.site import build
+from holonom.language import speaking
 
 
 @pytest.fixture(scope="session")
@@ -26,9 +28,27 @@ def results():
 @pytest.fixture(scope="session")
 def made_companion(results, tmp_path_factory):
     """Sphinx's application that made the companion, and what its chapters made the pages of, by the pages' names."""
-    directory = tmp_path_factory.mktemp("made") / "companion"
-    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, None, dict(results))
-    return build((), directory, shelf, {}), shelf.pages
+    folder = tmp_path_factory.mktemp("made")
+    directory, sources = folder / "companion", copied(folder)
+    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, folder / "kept", dict(results))
+    return build(sources, directory, shelf, {}), shelf.known
+
+
+def copied(folder):
+    """Copy the texts of the book and the manual, with what they include of the repository. Return their folder."""
+    for name in ("tests", "examples", "maxima"):
+        (folder / name).symlink_to(REPOSITORY / name)
+    return Path(shutil.copytree(SOURCES, folder / "harness" / "companion"))
+
+
+@pytest.fixture(scope="session")
+def chinese(results, tmp_path_factory):
+    """Directory of the companion's pages in Chinese."""
+    directory = tmp_path_factory.mktemp("chinese") / "companion"
+    shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
+    with speaking("zh"):
+        build(SOURCES, directory, shelf, {})
+    return directory
 
 
 @pytest.fixture(scope="session")
@@ -39,7 +59,7 @@ def companion(made_companion):
 
 @pytest.fixture(scope="session")
 def chapter_pages(made_companion):
-    """What the companion's chapters make their pages of, by the last part of their names."""
+    """Results and values of the companion's chapters, by the last part of their names."""
     return {name.rpartition("/")[2]: page for name, page in made_companion[1].items()}
 
 

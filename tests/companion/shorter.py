@@ -6,10 +6,10 @@ import pytest
 
 from holonom.benchmark.work_precision.study import Plan, Study, study
 from holonom.companion import convergence
-from holonom.companion.chapter import Run
+from holonom.companion.chapter import chapters_of_the_paper
 from holonom.companion.chapters import INITIAL_SCENE, PAPER
 from holonom.companion.convergence import RadiiFound
-from holonom.companion.paper import chapters_of_the_paper
+from holonom.companion.runs import Run
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 

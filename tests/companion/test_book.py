@@ -10,13 +10,14 @@ import pytest
 from fontTools.ttLib import TTFont
 from sympy import Symbol, sin
 
-from holonom.companion import runs
+from holonom.companion import chapter as chapters
 from holonom.companion.cards import named_equations, scene_named
+from holonom.companion.chapter import chapters_of_the_paper
 from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
 from holonom.companion.convergence import draw_radius
 from holonom.companion.directives import FILES
-from holonom.companion.paper import chapters_of_the_paper
-from holonom.companion.runs import drawn
+from holonom.companion.runs import Run, derive, drawn
+from holonom.errata import errata
 from holonom.series.radius import ENTIRE
 
 LOADING = {"link", "script", "img", "source", "iframe"}
@@ -114,7 +115,7 @@ def test_every_chapter_that_computes_has_its_page(companion):
 
 
 def test_every_equation_of_the_paper_s_record_has_a_card(companion, results):
-    record = results[runs.derived(PAPER)].record
+    record = results[Run(derive, (PAPER,))].record
     derived = {each.number for part in (*record.derivations, *record.scenes) for each in part.equations}
     assert derived <= {number for numbers in CARDS.values() for number in numbers}
     for page, numbers in CARDS.items():
@@ -122,7 +123,7 @@ def test_every_equation_of_the_paper_s_record_has_a_card(companion, results):
 
 
 def test_every_misprint_is_counted_and_marked(companion, results):
-    printed = results[runs.printed()]
+    printed = results[Run(errata)]
     shown = pages.words(companion / "manual" / "misprints.html")
     wrong = sum(not each.agrees for each in printed)
     assert f"Of {len(printed)} equations {len(printed) - wrong} are printed as derived, {wrong} are not." in shown
@@ -162,7 +163,7 @@ def test_one_letter_has_one_shape(companion):
 
 def test_sines_and_cosines_that_cancel_are_not_left_standing(results):
     """T of the bead is M v^2/2 + m(v^2 + r'^2 + r^2 w^2)/2 + ..., since sin^2 + cos^2 = 1."""
-    relations = named_equations(results[runs.derived(BEAD)])["kinetic_energy"].relations
+    relations = named_equations(results[Run(derive, (BEAD,))])["kinetic_energy"].relations
     m, w, r = (Symbol(name, real=True) for name in ("m", "w", "r"))
     found = {str(each.left): each.right for each in relations}
     assert found["A[2, 2]"] == m
@@ -204,7 +205,7 @@ def test_numbers_that_exercises_need_are_on_their_page(companion, results):
     """Those of the scene that a chapter is about, before its exercises."""
     given = {"initial-motion": INITIAL_SCENE, "worked-example": INITIAL_SCENE, "radius-of-convergence": INITIAL_SCENE}
     for slug, name in given.items():
-        scene = scene_named(results[runs.derived(PAPER)], name)
+        scene = scene_named(results[Run(derive, (PAPER,))], name)
         page = pages.parsed(companion / "book" / f"{slug}.html")
         exercises = next(each for each in page.iter("section") if each.get("id") == "exercises")
         remarks = [each for each in exercises.iter("p") if each.get("class") == "remark"]
@@ -242,5 +243,5 @@ def test_the_radii_of_the_whole_figure_are_those_of_the_truth():
 def test_the_whole_study_has_its_fifty_digits_on_the_page():
     chapter = chapters_of_the_paper()["work-precision"]
     page = chapter.page({name: run.compute(*run.arguments) for name, run in chapter.runs.items()})
-    assert min(each.error for each in page.content["rows"]) < 1e-48
-    assert "<svg" in page.figures["accuracy"]
+    assert min(each.error for each in page["rows"]) < 1e-48
+    assert "<svg" in page[chapters.FILES]["accuracy.svg"]

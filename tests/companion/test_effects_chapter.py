@@ -5,7 +5,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from holonom.companion.chapters.effects import STILL, TURNING
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
@@ -13,6 +12,7 @@ from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Simulation
 from holonom.simulation.simulate import simulate
 
+TURNING, STILL = "foucault_scene", "still_scene"
 FILE = Path(__file__).parents[2] / "examples" / "spherical_pendulum.mac"
 OMEGA, LENGTH, REACH = 1 / 20, 1, 3 / 5
 

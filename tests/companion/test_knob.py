@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from holonom.companion.chapters.turn_the_knob import LAWS, RUNS
+from holonom.companion.chapter import chapters_of_the_paper
+from holonom.companion.chapters.turn_the_knob import LAWS
 from holonom.companion.directives import FILES
 from holonom.program.numpy_function import NumpyFunction
 
 NODE = shutil.which("node")
 pytestmark = pytest.mark.skipif(NODE is None, reason="no script was run: node is not installed")
+RUNS = chapters_of_the_paper()["turn-the-knob"].runs
 SETTINGS = {
     "u0": 0.7,
     "omega": 2.0,
@@ -105,7 +107,7 @@ def test_every_motion_is_free_where_the_root_is_double(simulated, kappa):
 
 
 def test_the_paper_s_damping_is_singled_out_by_a_proof(results):
-    assert results[RUNS["free"]].motion.verdict == "free"
+    assert results[RUNS["paper"]].motion.verdict == "free"
     assert results[RUNS["other"]].motion.verdict == "not free"
 
 

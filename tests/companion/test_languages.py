@@ -16,9 +16,9 @@ from holonom.benchmark.machine import this_machine
 from holonom.cli import holonom
 from holonom.companion import directives, site
 from holonom.companion import pages as companion_pages
+from holonom.companion.chapter import SOURCES, chapters_of_the_paper
 from holonom.companion.chapters import gallery
 from holonom.companion.directives import FILES
-from holonom.companion.paper import chapters_of_the_paper
 from holonom.companion.shelf import Shelf
 from holonom.free_motion import free_motion
 from holonom.language import Message, speaking
@@ -133,7 +133,7 @@ def bracketed(results, tmp_path_factory):
         companion_pages.environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
         shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
         with speaking("zh"):
-            site.build((), directory, shelf, {})
+            site.build(SOURCES, directory, shelf, {})
         companion_pages.environment.cache_clear()
     return directory
 

@@ -73,7 +73,7 @@ def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(
 
 def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):
     assert pictures(own, "5-undrawn") == {"5-undrawn-scene-1-curves.svg"}
-    assert "The system does not say how it looks." in pages.words(own / "5-undrawn-motion.html")
+    assert "The system has no drawing." in pages.words(own / "5-undrawn-motion.html")
 
 
 def test_a_file_that_is_refused_leaves_nothing(tmp_path):

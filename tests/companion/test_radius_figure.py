@@ -6,7 +6,7 @@ import pytest
 from shorter import FEW_ORDERS
 
 from holonom.companion import convergence
-from holonom.companion.paper import chapters_of_the_paper
+from holonom.companion.chapter import chapters_of_the_paper
 
 SVG = "{http://www.w3.org/2000/svg}"
 

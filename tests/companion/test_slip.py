@@ -6,11 +6,12 @@ import pytest
 from pages import REPOSITORY
 
 from holonom import maxima
-from holonom.companion.paper import chapters_of_the_paper
+from holonom.companion.cards import by_anchor, derivation_cards
+from holonom.companion.chapter import chapters_of_the_paper
 
 RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*mixed_form(f,'
 WRONG = RIGHT.replace("= 2*", "= -2*")
-SHOWN = ("bob", "paper")  # the derivations that cards are made of
+SHOWN = ("bob_file", "paper")  # the derivations that cards are made of
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +33,8 @@ def cards(results, tmp_path_factory):
             run = chapter.runs[name]
             file, *others = run.arguments
             found[name] = run.compute(root / file.relative_to(REPOSITORY), *others)
-    return chapter.page(found).content["cards"]
+    numbers = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
+    return by_anchor(derivation_cards(numbers, [found["bob_file"], found["paper"]], found["printed"]))
 
 
 def verdicts(card):

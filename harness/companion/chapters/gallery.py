@@ -2,25 +2,32 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
+from typing import Any
 
 from .. import table
-from ..chapter import Page
+from ..chapter import FILES
 from ..motions import Motion, figures_of, motion
+from ..runs import Run
 from . import EXAMPLES
 
 EXHIBITS = table("gallery")["exhibit"]
 
 
 RUNS = {
-    each["name"]: motion(
-        EXAMPLES.parent / each["file"], each.get("scene"), Fraction(each["until"]) if "until" in each else None
+    each["name"]: Run(
+        motion,
+        (
+            EXAMPLES.parent / each["file"],
+            each.get("scene"),
+            Fraction(each["until"]) if "until" in each else None,
+        ),
     )
     for each in EXHIBITS
 }
 
 
-def page(results: Mapping[str, Motion]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Motion]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -29,10 +36,8 @@ def page(results: Mapping[str, Motion]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
-    return Page(
-        {"exhibits": [(exhibit, results[exhibit["name"]]) for exhibit in EXHIBITS]},
-        figures=figures_of(results.items()),
-    )
+    exhibits = [(exhibit, results[exhibit["name"]]) for exhibit in EXHIBITS]
+    return {"exhibits": exhibits, FILES: figures_of(results.items())}

@@ -1,16 +1,18 @@
 """Chapter on hard cases: motions on which a simple method loses digits."""
 
 from collections.abc import Mapping
+from functools import partial
+from typing import Any
 
 from ...benchmark.hard_cases.case import CaseReport, Extent, examined
 from ...benchmark.hard_cases.register import REGISTER
 from ...figures.benchmark import draw_stability
-from ..chapter import Page, Run
-from ..runs import drawn
+from ..chapter import FILES
+from ..runs import Run, drawn
 
 
-def page(results: Mapping[str, CaseReport]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, CaseReport]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -19,17 +21,16 @@ def page(results: Mapping[str, CaseReport]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
     reports = list(results.values())
-    return Page(
-        {
-            "reports": reports,
-            "sweeps": [each for each in reports if each.sweep],
-        },
-        figures={"hard-cases": drawn(lambda file: draw_stability(reports, file))},
-    )
+    figure = drawn(partial(draw_stability, reports))
+    return {
+        "reports": reports,
+        "sweeps": [each for each in reports if each.sweep],
+        FILES: {"hard-cases.svg": figure},
+    }
 
 
 def _examined(name: str) -> CaseReport:

@@ -8,33 +8,26 @@ import mpmath
 import numpy as np
 from sympy import Expr, Symbol
 
-from ...figures.curves import Panel, draw_curves
+from ...figures.curves import Panel
 from ...figures.style import with_symbols
 from ...language import gettext
 from ...number_texts import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
-from ..cards import derivation_cards, named_equations, scene_cards, scene_named
-from ..chapter import Page
-from ..runs import derived, printed, series
-from . import BOB, BOB_SCENE, INITIAL_SCENE, PAPER
+from ..cards import named_equations, scene_named
+from ..runs import DEFAULT_LIMITS, NO_SETTINGS, Run, series
+from . import INITIAL_SCENE, PAPER
 
+BOB_SCENE = "drawn_in_scene"
 LOW_ORDER, HIGH_ORDER = 3, 40
 TIME, LAST = Fraction(1, 10), Fraction(1, 2)
 SHOWN = "q1"  # the coordinate that is drawn
 
-
-RUNS = {
-    "paper": derived(PAPER),
-    "bob": derived(BOB),
-    "printed": printed(),
-    "expanded": series(PAPER, INITIAL_SCENE, HIGH_ORDER),
-    "varied": series(PAPER, INITIAL_SCENE, LOW_ORDER, sensitivities=("u0",)),
-}
+RUNS = {"varied": Run(series, (PAPER, INITIAL_SCENE, LOW_ORDER, NO_SETTINGS, DEFAULT_LIMITS, ("u0",)))}
 
 
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -43,28 +36,19 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
-    paper, bob = results["paper"], results["bob"]
-    eliminated = derivation_cards(["11"], [paper, bob], results["printed"])
-    cards = scene_cards(["12", "19", "13", "18"], [(paper, INITIAL_SCENE), (bob, BOB_SCENE)], results["printed"])
-    bob_equations, bob_scene = named_equations(bob, BOB_SCENE), scene_named(bob, BOB_SCENE)
-    return Page(
-        {
-            "eliminated": eliminated,
-            "cards": {card.anchor: card for card in cards},
-            "scene": scene_named(paper, INITIAL_SCENE),
-            "fixed": named_equations(paper, INITIAL_SCENE)["determined_initial_values"],
-            "bob_accelerations": bob_equations["initial_accelerations"],
-            "bob_numbers": _numeric_values(bob_equations["initial_accelerations"], bob_scene),
-            "slope": Fraction(results["varied"].sensitivities["d(lambda1, u0)"][0]),
-            "time": TIME,
-            "orders": (LOW_ORDER, HIGH_ORDER),
-            "compared": _compared(results["expanded"]),
-        },
-        figures={"first-times": draw_curves([beginning(results["expanded"])], gettext("t (dimensionless)"))},
-    )
+    bob, expanded = results["bob"], results["expanded"]
+    accelerations = named_equations(bob, BOB_SCENE)["initial_accelerations"]
+    return {
+        "bob_numbers": _numeric_values(accelerations, scene_named(bob, BOB_SCENE)),
+        "slope": Fraction(results["varied"].sensitivities["d(lambda1, u0)"][0]),
+        "time": TIME,
+        "orders": (LOW_ORDER, HIGH_ORDER),
+        "compared": _compared(expanded),
+        "beginning": beginning(expanded),
+    }
 
 
 def _numeric_values(equation: Equation, scene: Scene) -> dict[str, Expr]:

@@ -1,7 +1,6 @@
 """Chapter on the radius of convergence of a power series."""
 
 from collections.abc import Mapping
-from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -13,31 +12,21 @@ from ...number_texts import number, numbers
 from ...series.power_series import MotionSeries
 from ...simulation.result import Simulation
 from ..cards import named_equations, scene_named
-from ..chapter import Page, Run
+from ..chapter import FILES
 from ..convergence import draw_partial_sums, draw_radius, find_radii
 from ..expressions import zeros
-from ..runs import Derived, derived, drawn, series, simulation
-from . import FREE_SCENE, INITIAL_SCENE, PAPER, PENDULUM
+from ..runs import Derived, Run, drawn
+from . import INITIAL_SCENE
 
-ORDER = 80
 ORDERS, TIMES = (5, 10, 20, 40, 80), (0.5, 1.0)  # within the radius and beyond it
 COORDINATE = "q3"
-UNTIL, SAMPLES = Fraction(3, 2), 301
-SWING = "swing_scene"
 
 
-RUNS = {
-    "paper": derived(PAPER),
-    "initial": series(PAPER, INITIAL_SCENE, ORDER),
-    "free": series(PAPER, FREE_SCENE, ORDER),
-    "pendulum": series(PENDULUM, SWING, ORDER),
-    "motion": simulation(PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-    "radius": Run(find_radii),
-}
+RUNS = {"radius": Run(find_radii)}
 
 
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -46,33 +35,24 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
-    paper = results["paper"]
-    scene = scene_named(paper, INITIAL_SCENE)
+    paper, expanded, motion = results["paper"], results["series"], results["motion"]
     exact = _singular_times(paper, INITIAL_SCENE)
-    start = scene.time_span[0]
-    return Page(
-        {
-            "scene": scene,
-            "order": ORDER,
-            "series": results["initial"],
-            "entire": results["free"].radius,
-            "pendulum": results["pendulum"],
-            "denominator": denominator(paper),
-            "exact": exact,
-            "exact_radius": min(sympy.Abs(time - start) for time in exact),
-            "coordinate": COORDINATE,
-            "confronted": confronted(results["initial"], results["motion"]),
-            "orders": ORDERS,
-            "times": [float(time) for time in (results["motion"].times[0], results["motion"].times[-1])],
+    start = scene_named(paper, INITIAL_SCENE).time_span[0]
+    return {
+        "denominator": denominator(paper),
+        "exact": exact,
+        "exact_radius": min(sympy.Abs(time - start) for time in exact),
+        "coordinate": COORDINATE,
+        "confronted": confronted(expanded, motion),
+        "orders": ORDERS,
+        FILES: {
+            "partial-sums.svg": _partial_sums(expanded, motion),
+            "radius.svg": drawn(partial(draw_radius, results["radius"])),
         },
-        figures={
-            "partial-sums": _partial_sums(results["initial"], results["motion"]),
-            "radius": drawn(partial(draw_radius, results["radius"])),
-        },
-    )
+    }
 
 
 def denominator(paper: Derived) -> Expr:

@@ -6,16 +6,13 @@ drawing, and for each law what the accelerations are divided by, at complex time
 
 import json
 from collections.abc import Mapping
-from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
 import sympy
 from sympy import I, Symbol
 
-from ...figures.curves import Panel, draw_curves
 from ...figures.style import text_with_symbols
-from ...language import gettext
 from ...mathjson import from_sympy
 from ...program.model import Model, scene_model
 from ...program.motion_problem import motion_problem
@@ -26,21 +23,19 @@ from ...record import Scene
 from ...sandbox import Limits
 from .. import TEMPLATES
 from ..cards import named_equations, scene_named
-from ..chapter import Page, Run
-from ..power import energy_balance
-from ..runs import Derived, derived, free, simulation
+from ..chapter import FILES
+from ..runs import Derived, Run
 from . import KNOB
 from .radius_of_convergence import denominator
 
 LAWS = {"linear": "linear_scene", "exponential": "exponential_scene", "swinging": "swinging_scene"}
 OPEN = ("u0", "k", "c")
 OF_LAW = {"linear": (), "exponential": ("kappa",), "swinging": ("omega",)}  # parameters of one law alone
-UNTIL, SAMPLES = Fraction(4), 201
-UNDAMPED = (("c", "1"),)  # a damping other than the paper's
+UNTIL, SAMPLES = 4.0, 201
 
 
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -49,41 +44,15 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
-    found = results["knob"]
-    motions = {law: results[law] for law in LAWS}
-    balances = {
-        law: energy_balance(found.record.system, scene_named(found, LAWS[law]), motion)
-        for law, motion in motions.items()
+    return {
+        "values": {name: value for model in results["models"].values() for name, value in model.values.items()},
+        "samples": SAMPLES,
+        "law_of": lambda motion: text_with_symbols(motion.title.rpartition(", ")[2]),
+        FILES: {"knob.js": script(results["knob"], results["models"], results["drawing"])},
     }
-    shown = {law: motion.times for law, motion in motions.items()}
-    titles = {law: text_with_symbols(motion.title.rpartition(", ")[2]) for law, motion in motions.items()}
-    multipliers = {titles[law]: (shown[law], motion.multipliers["lambda1"]) for law, motion in motions.items()}
-    powers = {titles[law]: (shown[law], balance.power) for law, balance in balances.items()}
-    return Page(
-        {
-            "scene": scene_named(found, LAWS["linear"]),
-            "values": {name: value for model in results["models"].values() for name, value in model.values.items()},
-            "until": UNTIL,
-            "samples": SAMPLES,
-            "spent": {law: float(balance.by_knob[-1]) for law, balance in balances.items()},
-            "paper": results["free"],
-            "other": results["other"],
-            "other_damping": dict(UNDAMPED)["c"],
-        },
-        figures={
-            "knob": draw_curves(
-                [
-                    Panel(gettext("multiplier λ₁\n(dimensionless)"), multipliers),
-                    Panel(gettext("power of the control\n(dimensionless)"), powers),
-                ],
-                gettext("t (dimensionless)"),
-            )
-        },
-        files={"knob.js": script(found, results["models"], results["drawing"])},
-    )
 
 
 def models(file: Path) -> dict[str, Model]:
@@ -130,7 +99,7 @@ def script(found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str
     model = models["linear"]
     data = {
         "coordinates": model.coordinates,
-        "until": float(UNTIL),
+        "until": UNTIL,
         "samples": SAMPLES,
         "shapes": shapes,
     }
@@ -181,11 +150,4 @@ def _singular(found: Derived, name: str) -> Program:
     )
 
 
-RUNS = {
-    "knob": derived(KNOB),
-    "models": Run(models, (KNOB,)),
-    "drawing": Run(_drawing_of, (KNOB, LAWS["linear"])),
-    "free": free(KNOB, LAWS["exponential"]),
-    "other": free(KNOB, LAWS["exponential"], UNDAMPED),
-    **{law: simulation(KNOB, scene, UNTIL, SAMPLES) for law, scene in LAWS.items()},
-}
+RUNS = {"models": Run(models, (KNOB,)), "drawing": Run(_drawing_of, (KNOB, LAWS["linear"]))}

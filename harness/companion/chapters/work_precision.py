@@ -3,12 +3,13 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from ...benchmark.work_precision.measurement import WHOLE_MOTION, Group
 from ...benchmark.work_precision.study import Plan, Study, study
-from ...figures.benchmark import draw_study
+from ...figures.benchmark import TIMES, draw_study
 from ...figures.curves import draw_drift
 from ...program.motion_problem import motion_problem
 from ...program.request import Request
@@ -16,8 +17,8 @@ from ...sandbox import Limits
 from ...simulation.request import SimulationRequest, Stabilization
 from ...simulation.result import Simulation
 from ...simulation.simulate import simulate
-from ..chapter import Page, Run
-from ..runs import drawn
+from ..chapter import FILES
+from ..runs import Run, drawn
 from . import INITIAL_SCENE, PAPER, PENDULUM
 
 SHORT_PLAN = {
@@ -32,8 +33,8 @@ SHORT_PLAN = {
 SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -42,31 +43,28 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
     measured, motions = results["study"], results["drift"]
-    return Page(
-        {
-            "study": measured,
-            "rows": [each for each in measured.measurements if each.group in WHOLE_MOTION],
-            "series": [each for each in measured.measurements if each.group is Group.SERIES],
-            "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
-            "tolerance": TOLERANCE,
-            "worst": {
-                stabilization: {
-                    "constraints": max(found.residuals["position"]),
-                    "energy": max(abs(found.energy["energy_error"])),
-                }
-                for stabilization, found in motions.items()
-            },
-            "pendulum": motions[Stabilization.NONE],
+    return {
+        "rows": [each for each in measured.measurements if each.group in WHOLE_MOTION],
+        "series": [each for each in measured.measurements if each.group is Group.SERIES],
+        "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
+        "tolerance": TOLERANCE,
+        "worst": {
+            method: {
+                "constraints": max(found.residuals["position"]),
+                "energy": max(abs(found.energy["energy_error"])),
+            }
+            for method, found in motions.items()
         },
-        figures={
-            "accuracy": drawn(lambda file: draw_study(measured, file)),
-            "drift": draw_drift(motions),
+        "pendulum": motions[Stabilization.NONE],
+        FILES: {
+            "accuracy.svg": drawn(partial(draw_study, measured, panels=TIMES, columns=1)),
+            "drift.svg": draw_drift(motions),
         },
-    )
+    }
 
 
 def _short_study(file: Path, scene: str) -> Study:
@@ -91,8 +89,8 @@ def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
     """
     problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
     return {
-        each: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=each, until=UNTIL, samples=SAMPLES))
-        for each in Stabilization
+        method: simulate(problem, SimulationRequest(tol=TOLERANCE, stabilization=method, until=UNTIL, samples=SAMPLES))
+        for method in Stabilization
     }
 
 

@@ -2,29 +2,24 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import dropwhile
 from typing import Any
 
 import sympy
-from sympy import Expr, Symbol
+from sympy import Symbol
 
 from ...errata import PrintedEquation
-from ...figures.curves import Panel, draw_curves
 from ...language import gettext, translatable, translated
 from ...mathjson import from_sympy
 from ...record import Equation, Relation
 from ...simulation.result import Simulation
 from ..cards import Card, Instance, anchors, named_equations, scene_named, verdicts_on
-from ..chapter import Page
-from ..expressions import right_side, under, zeros
+from ..expressions import RATES, in_sum, right_side, under, zeros
 from ..power import values_along
-from ..runs import Derived, derived, free, printed, simulation
-from . import FREE_SCENE, INITIAL_SCENE, PAPER
+from ..runs import Derived
+from . import FREE_SCENE, INITIAL_SCENE
 
 FIRST_NUMBER = "14"
-UNTIL, SAMPLES = Fraction(3), 2001
-RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its time derivatives
 
 
 @dataclass(frozen=True)
@@ -63,16 +58,8 @@ SECTIONS = {
 """Titles of the chapter's sections, by the number or name of the equation that each begins with."""
 
 
-RUNS = {
-    "paper": derived(PAPER),
-    "printed": printed(),
-    "free": free(PAPER, INITIAL_SCENE),
-    "pushed": simulation(PAPER, INITIAL_SCENE, UNTIL, SAMPLES),
-}
-
-
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -81,59 +68,27 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
     paper = results["paper"]
     example = list(dropwhile(lambda each: each.number != FIRST_NUMBER, results["printed"]))
     cards = _cards(example, paper, results["free"].universal.laws)
-    derived_multiplier = named_equations(paper)["multipliers"].relations[0].right
-    printed_multiplier = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
-    laws = {name: scene_named(paper, name).control_law for name in (FREE_SCENE, INITIAL_SCENE)}
-    return Page(
-        {
-            **multiplier_at_start(paper, results["pushed"]),
-            "scene": scene_named(paper, INITIAL_SCENE),
-            "sections": _sections(cards),
-            "equations": len(example),
-            "misprints": [each for each in example if not each.agrees],
-            "initial": [each for each in example if each.number == "17"],
-            "multiplier": named_equations(paper)["multipliers"],
-            "anchors": {(card.number, card.name): card.anchor for card in cards},
-            "roots": (roots := zeros(sympy.fraction(derived_multiplier)[1])),
-            "real": any(each.is_real for each in roots),
-            "derived_under_law": under(laws[FREE_SCENE], derived_multiplier),
-            "printed_under_law": under(laws[FREE_SCENE], printed_multiplier),
-            "difference": under(laws[INITIAL_SCENE], derived_multiplier - printed_multiplier),
-        },
-        figures={
-            "misprint": draw_curves(
-                [_printed_and_derived(paper, printed_multiplier, results["pushed"])], gettext("t (dimensionless)")
-            )
-        },
-    )
-
-
-def in_sum(expression: Expr) -> Expr:
-    """Return an expression of the example in terms of S = q1 + q2.
-
-    Parameters
-    ----------
-    expression : Expr
-        SymPy expression.
-
-    Returns
-    -------
-    Expr
-        Expression in S.
-    """
-    replaced = {
-        Symbol(name("q2"), real=True): Symbol(name("S"), real=True) - Symbol(name("q1"), real=True) for name in RATES
+    derived = named_equations(paper)["multipliers"].relations[0].right
+    printed = right_side(next(each for each in example if each.name == "multiplier").printed_tree)
+    scene = scene_named(paper, INITIAL_SCENE)
+    free_law = scene_named(paper, FREE_SCENE).control_law
+    return {
+        **multiplier_at_start(paper, results["pushed"]),
+        "example": example,
+        "sections": _sections(cards),
+        "anchors": {(card.number, card.name): card.anchor for card in cards},
+        "roots": zeros(sympy.fraction(derived)[1]),
+        "derived_under_law": under(free_law, derived),
+        "printed_under_law": under(free_law, printed),
+        "difference": under(scene.control_law, derived - printed),
+        "printed_along": values_along(printed, scene, results["pushed"]),
     }
-    found = sympy.simplify(expression.subs(replaced))
-    return sympy.collect(
-        sympy.expand(sympy.numer(found)), [Symbol(name("S"), real=True) for name in RATES]
-    ) / sympy.factor(sympy.denom(found))
 
 
 def multiplier_at_start(paper: Derived, pushed: Simulation) -> dict[str, Any]:
@@ -163,13 +118,6 @@ def multiplier_at_start(paper: Derived, pushed: Simulation) -> dict[str, Any]:
         "multiplier_at_start": under(scene.control_law, multiplier).subs(at_start).subs(numbers),
         "multiplier_followed": float(pushed.multipliers["lambda1"][0]),
     }
-
-
-def _printed_and_derived(paper: Derived, printed: Expr, pushed: Simulation) -> Panel:
-    """Return the multiplier of the second task, as derived and as printed."""
-    values = values_along(printed, scene_named(paper, INITIAL_SCENE), pushed)
-    shown = {gettext("as derived"): pushed.multipliers["lambda1"], gettext("by the formula in print"): values}
-    return Panel(gettext("multiplier λ₁ (dimensionless)"), {name: (pushed.times, each) for name, each in shown.items()})
 
 
 def _cards(example: list[PrintedEquation], paper: Derived, laws: tuple) -> list[Card]:

@@ -8,15 +8,14 @@ from ...documents import ask
 from ...failures import HolonomError
 from ...formats import Document
 from ...temporary import private_directory
-from ..chapter import Page, Run
-from ..runs import derived
+from ..runs import Run
 from . import PENDULUM
 
 FITTING, CONTRADICTING = "y = -cos(%pi/13)", "y = -1"
 
 
-def page(results: Mapping[str, Any]) -> Page:
-    """Return the page that results make.
+def page(results: Mapping[str, Any]) -> dict[str, Any]:
+    """Return values of the page.
 
     Parameters
     ----------
@@ -25,17 +24,10 @@ def page(results: Mapping[str, Any]) -> Page:
 
     Returns
     -------
-    Page
-        Content and files of the page.
+    dict
+        Values by name.
     """
-    return Page(
-        {
-            "record": results["pendulum"].record,
-            "report": results["pendulum"].report,
-            "fitting": FITTING,
-            "contradicting": CONTRADICTING,
-        },
-    )
+    return {"fitting": FITTING, "contradicting": CONTRADICTING}
 
 
 def _refusal_of_the_change(file: Path, given: str, changed: str) -> str:
@@ -57,7 +49,4 @@ def _loading_the_library(text: str) -> str:
     return text.replace(load, 'load("holonom.mac")$')
 
 
-RUNS = {
-    "pendulum": derived(PENDULUM),
-    "refusal": Run(_refusal_of_the_change, (PENDULUM, FITTING, CONTRADICTING)),
-}
+RUNS = {"refusal": Run(_refusal_of_the_change, (PENDULUM, FITTING, CONTRADICTING))}

@@ -22,14 +22,14 @@ def browser(tmp_path_factory):
 
 
 @pytest.fixture(scope="session", params=LOOKS, ids=str)
-def seen(request, browser, companion, own):
+def seen(request, browser, companion, chinese, own):
     """What is met on every page, in one of the views; screenshots are kept."""
     view = request.param
     folder = SCREENSHOTS / str(view).replace(", ", "-")
     shutil.rmtree(folder, ignore_errors=True)
     observations = []
-    for book in (companion, own):
+    for book in (companion, chinese, own):
         for page in pages.pages(book):
             observations.append(observe(browser, page, view))
-            keep_screenshot(browser, (folder / book.name / page.relative_to(book)).with_suffix(".png"))
+            keep_screenshot(browser, (folder / book.parent.name / page.relative_to(book)).with_suffix(".png"))
     return observations
