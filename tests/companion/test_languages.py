@@ -18,6 +18,7 @@ from holonom.companion import directives, site
 from holonom.companion import pages as companion_pages
 from holonom.companion.chapter import SOURCES, chapters_of_the_paper
 from holonom.companion.chapters import gallery
+from holonom.companion.conf import exclude_patterns
 from holonom.companion.directives import FILES
 from holonom.companion.shelf import Shelf
 from holonom.free_motion import free_motion
@@ -133,7 +134,7 @@ def bracketed(results, tmp_path_factory):
         companion_pages.environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
         shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
         with speaking("zh"):
-            site.build(SOURCES, directory, shelf, {})
+            site.build(SOURCES, directory, shelf, {"exclude_patterns": [*exclude_patterns, "reference"]})
         companion_pages.environment.cache_clear()
     return directory
 

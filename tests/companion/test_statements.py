@@ -41,15 +41,15 @@ def multipliers(motion) -> np.ndarray:
     return np.abs(motion.multipliers["lambda1"])
 
 
-def slope_of_the_first_multiplier(found, content) -> bool:
+def slope_of_the_first_multiplier(found) -> bool:
     """lambda1 at the start as a function of u0, differentiated with pencil."""
     u = Symbol("u")
     multiplier = (-3 * u + (1 - u) / 3) / (1 + 2 * u**2)
-    return multiplier.diff(u).subs(u, Rational(3, 10)) == Rational(content["slope"])
+    return multiplier.diff(u).subs(u, Rational(3, 10)) == Rational(found["slope"])
 
 
 STATEMENTS = [
-    Statement(initial_motion, "is the same number", slope_of_the_first_multiplier),
+    Statement("initial-motion", "is the same number", slope_of_the_first_multiplier),
     Statement(
         "equations-of-motion",
         "no reaction acts along",
