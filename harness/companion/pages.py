@@ -54,8 +54,9 @@ def environment(language: str) -> jinja2.Environment:
         extensions=["jinja2.ext.i18n"],
         **WHITESPACE,
     )
-    named = [pair for module in MODULES for pair in vars(module).items()] + [*globals().items()]
-    functions = {name.removeprefix("_"): each for name, each in named if isfunction(each)}
+    named = [pair for module in MODULES for pair in vars(module).items() if not pair[0].startswith("_")]
+    own = [(name.removeprefix("_"), each) for name, each in globals().items()]
+    functions = {name: each for name, each in named + own if isfunction(each)}
     environment.filters = functions | environment.filters
     environment.globals |= functions | {"Panel": curves.Panel, "language": language}
     environment.globals["in_repository"] = shared("tests").is_dir()

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 
 PANEL = 5.5, 5.3  # inches
+MACHINE = 70  # characters in a line below a panel
 FEW_DIGITS = 20  # digits of the hardware numbers, and a few more
 SECONDS, OPERATIONS = translatable("time / s"), translatable("operations")
 
@@ -74,7 +76,7 @@ def draw_study(study: "Study", path: Path, panels: Sequence[View] = PANELS, colu
             _draw_panel(axes, [m for m in study.measurements if panel.shows(m)], panel.quantity)
             axes.set_title(gettext(panel.title, until=float(study.until), time=_time_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
-        figure.supxlabel(str(study.machine), x=0.01, ha="left", fontsize="small")
+        figure.supxlabel(fill(str(study.machine), MACHINE * columns), x=0.01, ha="left", fontsize="small")
         write_figure(figure, path)
 
 
