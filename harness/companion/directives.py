@@ -206,7 +206,7 @@ def _html(text: str) -> nodes.raw:
 
 
 def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
-    """Put the picture of each figure before its caption, with the first paragraph as its alternative text."""
+    """Put the picture of each figure, with its alternative text, before the caption."""
     for found in _containers(tree, FIGURE) if not _collecting(app) else ():
         name, (words, *caption) = found["figure"], found.children
         file, text = f'"figures/{name}.svg"', escape(Markup(words.astext()).striptags())

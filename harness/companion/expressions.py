@@ -8,7 +8,7 @@ from sympy import Expr, Symbol, simplify
 from ..mathjson import Tree, to_sympy
 from ..record import Equation
 
-RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its rates
+RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its time derivatives
 
 
 def under(law: Mapping[str, Expr], expression: Expr) -> Expr:

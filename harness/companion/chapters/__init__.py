@@ -1,6 +1,6 @@
-"""Chapters with computations of their own, one per module, and the examples that they use.
+"""Chapters with computations of their own, and the examples that they use.
 
-Each has a function `page(results)`, which computes values, and may have `RUNS` beside those in the head of its page.
+Each has a function `page(results)`, which computes values, and may have `RUNS` besides those in the head of its page.
 """
 
 from ...files import shared
