@@ -211,7 +211,7 @@ def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
         name, (words, *caption) = found["figure"], found.children
         file, text = f'"figures/{name}.svg"', escape(Markup(words.astext()).striptags())
         begin = f'<figure id="fig-{name}"><a href={file}><img src={file} alt="{text}" /></a><figcaption>'
-        found.replace_self([_html(begin), *caption, _html("</figcaption></figure>")])
+        found.parent.replace(found, [_html(begin), *caption, _html("</figcaption></figure>")])
 
 
 def _put_answers_apart(app: Sphinx, tree: nodes.document) -> None:
