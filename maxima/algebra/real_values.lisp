@@ -16,6 +16,13 @@
   "A list of the first part that is not real, empty if there is none."
   (cons '(mlist) (catch 'unreal (require-real-parts e) nil)))
 
+(defun $unreal_parts_in_entry (e)
+  "The same of all that the lists and equations of an entry hold."
+  (if (or ($listp e) ($equationp e))
+      (dolist (part (cdr e) '((mlist)))
+        (let ((found ($unreal_parts_in_entry part))) (when (cdr found) (return found))))
+      ($unreal_parts e)))
+
 (defun require-real-parts (e)
   (cond ((or (stringp e) (and (symbolp e) (member e *unreal-symbols*))) (throw 'unreal (list e)))
         ((or (atom e) (member (caar e) '(bigfloat rat $cubic_spline))) nil)
@@ -34,11 +41,12 @@
 
 (defun $partial_functions_of (names e)
   "The powers, roots, logarithms and inverse functions in an expression that contain these names and no others."
-  (let ((found nil) (known (cdr names)))
+  (let ((found nil) (met (make-hash-table :test 'equal)) (known (cdr names)))
     (labels ((contents (e)
                (cond ((atom e) (if (and (symbolp e) (not ($constantp e))) (if (member e known) 'known 'other)))
                      (t (let ((inside (remove nil (mapcar #'contents (cdr e)))))
                           (cond ((member 'other inside) 'other)
-                                (inside (if (member (caar e) *partial-functions*) (push e found)) 'known)))))))
+                                (inside (if (member (caar e) *partial-functions*) (keep e)) 'known))))))
+             (keep (e) (or (gethash e met) (setf (gethash e met) t found (cons e found)))))
       (contents e))
-    (cons '(mlist) (nreverse found))))
+    (mlist-of (nreverse found))))

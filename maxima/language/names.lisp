@@ -4,15 +4,25 @@
 
 (defun $readable (e)
   "One line of Maxima text, dot(q1) spelt as in the scene."
-  (remove #\\ (text-of-expression e)))
+  (remove #\\ (if (plainly-written-p e) (letters-of-name e) (text-of-expression e))))
+
+(defun plainly-written-p (e)
+  "Whether it is a name that Maxima shows letter by letter."
+  (and (maxima-name-p e) (not (get e 'op)) (not (get e 'reversealias))))
 
 (defun text-of-expression (e) (coerce (mstring e) 'string))
+
+(defun $plain_name (x) (and ($symbolp x) (not ($constantp x)) (not (member x '(t nil)))))
+
+(defun $reserved_name (x)
+  "lambda1, lambda2, ..."
+  (and (symbolp x) (numbered-name-p (letters-of-name x) "lambda")))
 
 (defun $unused_name (letters names)
   "The letters, as often as it takes until with a number behind them they name none of the names."
   (let ((once (text-of-expression letters)) (texts (mapcar #'text-of-expression (cdr names))))
     (do ((prefix once (concatenate 'string prefix once)))
-        ((notany #'(lambda (text) (numbered-name-p text prefix)) texts)
+        ((not (any-of-p #'(lambda (text) (numbered-name-p text prefix)) texts))
          (intern-invert-case (concatenate 'string "$" prefix))))))
 
 (defun numbered-name-p (text prefix)

@@ -23,16 +23,32 @@
 
 (defun $names_in (e)
   "The variables of an expression, as listofvars finds them, in the order in which they are met."
-  (let ((met (make-hash-table :test 'equal :size 16)) (names nil) (waiting (list e)))
-    (do () ((null waiting) (cons '(mlist simp) (nreverse names)))
+  (let ((known (make-known-names)) (waiting (list e)))
+    (do () ((null waiting) (mlist-of (nreverse (known-names-found known))))
       (let ((part (pop waiting)))
         (cond ((numberp part))
               ((or (symbolp part) (and (consp part) (member 'array (car part))))
-               (if (not (or (gethash part met) ($constantp part)))
-                   (setf (gethash part met) t names (cons part names))))
+               (if (not (or (met-before-p part known) ($constantp part))) (note-name part known)))
               ((atom part))
               ((specrepp part) (push (specdisrep part) waiting))
               (t (setq waiting (append (cdr part) waiting))))))))
+
+;;; A table of few names takes longer to make than to do without.
+
+(defstruct known-names found table (count 0))
+(defvar *few-names* 16)
+
+(defun met-before-p (name known)
+  (if (known-names-table known)
+      (gethash name (known-names-table known))
+      (member name (known-names-found known) :test #'equal)))
+
+(defun note-name (name known)
+  (push name (known-names-found known))
+  (cond ((known-names-table known) (setf (gethash name (known-names-table known)) t))
+        ((> (incf (known-names-count known)) *few-names*)
+         (let ((table (setf (known-names-table known) (make-hash-table :test 'equal))))
+           (dolist (each (known-names-found known)) (setf (gethash each table) t))))))
 
 (defun $applications_of (operator e)
   "The different parts of an expression that apply the operator, in the order in which they are met."
@@ -88,6 +104,24 @@
   "Of  name = value  those whose name the table has."
   (mlist-of (remove-if-not #'(lambda (item) (gethash (second item) table)) (cdr items))))
 
+(defun $items_failing (test items) (mlist-of (remove-if #'(lambda (item) (mfuncall test item)) (cdr items))))
+
+(defun $repeated_items (items)
+  "The atoms of a list that stand in it before."
+  (let ((met (make-hash-table :test 'equal :size 16)))
+    (mlist-of (remove-if-not #'(lambda (x) (or (gethash x met) (progn (setf (gethash x met) t) nil))) (cdr items)))))
+
+(defun $equationp (e) (and (consp e) (eq (caar e) 'mequal)))
+
+(defun $doubtful_values (table items)
+  "The items that are not  name = rational number  with a name that the table has."
+  (mlist-of (remove-if #'(lambda (item) (and ($equationp item) (gethash (second item) table) ($ratnump (third item))))
+                       (cdr items))))
+
+(defun $is_place (x)
+  "Whether it is [x, y], of a drawing."
+  (and ($listp x) (= (length x) 3) (not (any-of-p #'$listp (cdr x)))))
+
 (defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
 (defun $contains_root (e)
@@ -120,6 +154,9 @@
              (cond ((same-items-p parts (cdr e)) e)
                    ((eq (caar e) 'mplus) (sum-of-many parts))
                    (t (simplifya (cons (remove 'simp (car e)) parts) t)))))))
+
+(defun $sum_in_order (terms)
+  (if (any-of-p #'specrepp (cdr terms)) (simplifya (cons '(mplus) (cdr terms)) t) (sum-of-many (cdr terms))))
 
 (defun sum-of-many (terms) (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
 
@@ -170,6 +207,12 @@
   "The items of a list at these places."
   (let ((items (coerce (cdr items) 'vector)))
     (mlist-of (mapcar #'(lambda (place) (aref items (1- place))) (cdr places)))))
+
+(defun $others_among (size chosen)
+  "The numbers from 1 to size that are not chosen."
+  (let ((taken (make-array (1+ size) :initial-element nil)) (others nil))
+    (dolist (i (cdr chosen)) (setf (aref taken i) t))
+    (do ((i size (1- i))) ((< i 1) (mlist-of others)) (or (aref taken i) (push i others)))))
 
 (defun $field (structure name) (nth (place-of-field structure name) structure))
 

@@ -35,6 +35,14 @@
   (let ((unknown (unknown-operator e)))
     (if unknown ($refuse '$function_not_described entry unknown) (list '($json_expression) e))))
 
+(defun $json_described_list (entry expressions)
+  (cons '($json_array) (mapcar #'(lambda (e) ($json_described entry e)) (cdr expressions))))
+
+(defun $json_described_values (entry items)
+  (cons '($json_object)
+        (mapcar #'(lambda (item) (mlist-of (list ($readable (second item)) ($json_described entry (third item)))))
+                (cdr items))))
+
 (defun unknown-operator (e)
   (cond ((or (atom e) (eq (caar e) 'bigfloat)) nil)
         ((eq (caar e) 'mrat) (unknown-operator ($totaldisrep e)))

@@ -39,6 +39,13 @@
         ((eq (caar tree) '$json_expression) (write-mathjson ($totaldisrep (cadr tree)) out))
         (t ($refuse '$data_not_written tree))))
 
+(defun $json_assignments (assignments)
+  "Each [name, expression] as an array of both."
+  (cons '($json_array)
+        (mapcar #'(lambda (each)
+                    (list '($json_array) ($readable (second each)) (list '($json_expression) (third each))))
+                (cdr assignments))))
+
 (defun write-members (members out)
   (flet ((write-member (member out)
            (write-json-string (second member) out)
