@@ -1,4 +1,4 @@
-"""The paper as printed, compared with the derivation.
+"""The paper as published, compared with the derivation.
 
 Maxima does the comparison, in `examples/paper/printed.mac`. This module runs that and reads the result.
 """
@@ -18,14 +18,14 @@ PRINTED = shared("examples") / "paper" / "printed.mac"
 class PrintedEquation:
     """An equation of the paper, with the verdict on its printed form.
 
-    The print is that of our copy. Equations are Maxima text, on one line.
+    The published version is that of our copy. Equations are Maxima text, on one line.
     """
 
     number: str  # the equation number, without brackets; empty for an equation that has none
     name: str  # what the equation is
     agrees: bool  # whether the printed equation is the derived one
-    printed: str  # the equation as printed
-    # left side less right side as printed, less the same as derived; None where the paper agrees
+    printed: str  # the equation as published
+    # left side less right side as published, less the same as derived; None where the paper agrees
     difference: str | None
     corrected: str | None  # the printed equation, mended; None where the paper agrees
     note: str | None  # note about the transcription

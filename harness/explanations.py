@@ -107,7 +107,7 @@ def notes(report: "Report") -> Iterator[str]:
     Yields
     ------
     str
-        One sentence.
+        One message.
     """
     called = [segment for segment in report.segments if segment.engine == FALLBACK and segment.case is not None]
     for segment in called[:LISTED]:

@@ -16,7 +16,7 @@ def extra_of(package: str) -> str | None:
     Parameters
     ----------
     package : str
-        Name of the package, in any case of letters.
+        Name of the package, in upper or lower case.
 
     Returns
     -------

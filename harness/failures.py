@@ -280,7 +280,7 @@ class ErrorKind(Enum):
     )
     METHOD_GAVE_UP = ("{detail}", "use a larger tolerance", "use another method")
     NOT_LINEARIZED_ALONG = (
-        "small deviations change too fast to be followed: their error is estimated as {detail}",
+        "small deviations change too fast to be integrated: their error is estimated as {detail}",
         "choose an earlier end with {--until}",
     )
     MASS_INDEFINITE = (

@@ -57,7 +57,7 @@ def scene_file(path: str | Path) -> Path:
 
 
 def near_file(missing: Path) -> str:
-    """Return a suggestion for a missing file, as the end of a sentence.
+    """Return a suggestion for a missing file, as the end of a message.
 
     Parameters
     ----------

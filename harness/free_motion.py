@@ -137,7 +137,7 @@ class SeriesOfControls:
 class TrajectoryControl:
     """The control under which one motion is free."""
 
-    # ``closed form`` (in letters, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
+    # ``closed form`` (in symbols, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
     # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial time), ``any
     # control``, ``none`` (there is none) or ``not determined``
     kind: str

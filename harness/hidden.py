@@ -5,7 +5,7 @@ import unicodedata
 
 HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})  # Unicode categories: control, format, surrogate, line, paragraph
 
-# Control characters but line feed and tab, what joins and hides letters or turns the direction of writing, half
+# Control characters but line feed and tab, what joins and hides characters or turns the direction of writing, half
 # characters, and what no XML may hold.
 UNSEEN = re.compile(
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"

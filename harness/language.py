@@ -41,12 +41,12 @@ class Message(str):
 
     @staticmethod
     def of_document(content: str | dict[str, Any]) -> str:
-        """Return a sentence of a document, given whole or as a pattern with values.
+        """Return a message of a document, given whole or as a pattern with values.
 
         Parameters
         ----------
         content : str or dict
-            Part of the document. Values may be sentences in their turn.
+            Part of the document. Values may be messages in their turn.
 
         Returns
         -------

@@ -44,8 +44,8 @@ PASSED_ON = (
     "MAXIMA_LAYOUT_AUTOTOOLS",
 )
 LARGEST = 64 * MIB  # bytes of a scene file, and of the description that it leaves
-SHOWN = 40  # letters of a name that is refused
-# A string, or a name of more than 200 letters, some perhaps behind a backslash.
+SHOWN = 40  # characters of a name that is rejected
+# A string, or a name of more than 200 characters, some perhaps behind a backslash.
 LONG_NAME = re.compile(r'"(?:[^"\\]|\\.)*+"?|(?<![\w\\])(?P<name>(?:[^\W\d]|\\.)(?:\w|%|\\.){200,})', re.DOTALL)
 BYTE_ORDER_MARK = "\ufeff"
 SIGNALS = frozenset(signal.Signals)
@@ -183,7 +183,7 @@ def run_scene(file: Path, limits: Limits, settings: Mapping[str, str], document:
     Raises
     ------
     HolonomError
-        The file is missing, is refused, asks a question, exceeds a limit, or Maxima is missing.
+        The file is missing or invalid, asks a question, exceeds a limit, or Maxima is missing.
     """
     with doing("running the scene file"), _new_run(file, limits, settings) as run:
         left = run.leaves(DOCUMENT)

@@ -20,7 +20,7 @@ from .failures import ErrorKind, HolonomError
 
 LONGEST = 200  # digits of a number that an option gives
 LARGEST_EXPONENT = 307  # of a double
-SHOWN = 40  # letters of a time that is refused
+SHOWN = 40  # characters of a rejected time
 NAMES = {
     bool: "bool",
     int: "int",
@@ -39,7 +39,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 class Option:
     """The spelling of an option and its allowed values."""
 
-    help: str  # one or two sentences, on the command line and in Python
+    help: str  # the help text, on the command line and in Python
     metavar: str | None = None  # placeholder of the value on the command line
     spelt: tuple[str, ...] = ()  # on the command line, if it is not the name of the field
     alias: str = ""  # former name, accepted for one release

@@ -2,7 +2,7 @@
 
 In the sandbox a process has namespaces of its own: no network, no other process, the user nobody without privileges.
 It sees the system's programs and the files that it is given, read-only. Memory of limited size stands in for its
-working directory. Outside, it can write to the given output files alone. A filter refuses system calls that no
+working directory. Outside, it can write to the given output files alone. A filter rejects system calls that no
 derivation needs.
 """
 

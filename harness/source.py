@@ -93,7 +93,7 @@ def describe(file: Path, settings: Mapping[str, str] = NO_SETTINGS, limits: Limi
     Raises
     ------
     HolonomError
-        The file is missing, is refused, asks a question or exceeds a limit. Maxima is missing. The document is not a
+        The file is missing or invalid, asks a question or exceeds a limit. Maxima is missing. The document is not a
         description.
     """
     text = read_maxima_text(file)

@@ -23,7 +23,7 @@ from .failures import ErrorKind, HolonomError
 Tree = int | str | dict | list
 
 JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
-SHOWN = 60  # characters of a refused fragment that its refusal shows
+SHOWN = 60  # characters of a rejected fragment that the error shows
 
 INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
 FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")

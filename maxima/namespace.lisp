@@ -78,7 +78,7 @@
           private))))
 
 (defun plain-name (name)
-  "The name that a private symbol stands for; any other name as it is."
+  "The name of a private symbol; any other name as it is."
   (or (get name 'plain-name) name))
 
 (defun letters-of-name (name)

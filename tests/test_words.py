@@ -61,6 +61,14 @@ REPLACED_IN_PROSE = {
     r"(?:its|their|first|second|the) rates?": "time derivative, velocity, slope",
     r"at (?:the|a) start|of (?:the|a) start|from the start": "initial time, initial state",
     r"(?<!there )(?:is|are) no(?! longer| later| other)": "is not",
+    r"stand(?:s|ing)? for": "is, means, replaces",
+    r"sentences?": "message",
+    r"kinks?": "corner",
+    r"the print|(?:as|in) print|as printed(?!\.mac)": "the published version, as published",
+    r"follow(?:s|ed|ing)? (?:the|a|this|its|each) motions?|motions? (?:is|are|was|were) followed": "integrate",
+    r"pieces?": "part, polynomial, interval",
+    r"(?<!Greek )(?<!index )letters?": "symbol, character",
+    r"misses (?:the constraints|something)": "violates the constraints by, has an error",
 }
 # Files in which a word has another meaning, with the reason.
 ALLOWED = {
@@ -77,6 +85,25 @@ ALLOWED = {
         "maxima/general/initial_state.mac": "candidates for roots",
     },
     r"beside": {"harness/cli/beside.py": "the module's name"},
+    r"(?<!Greek )(?<!index )letters?": {
+        "harness/description.py": "names of letters and digits",
+        "harness/failures.py": "the same",
+        "harness/program/identifiers.py": "the same",
+        "harness/figures/style.py": "scripts of languages, Greek letters",
+        "harness/companion/fonts.py": "slanted letters",
+        "harness/typeset/": "Latin and Greek letters",
+        "maxima/paper/": "letters of indices",
+        "maxima/record/description.lisp": "a variable",
+    },
+    r"pieces?": {
+        "harness/program/c_source.py": "a name in generated C",
+        "harness/program/targets/": "the same, and in MATLAB",
+    },
+    r"the print|(?:as|in) print|as printed(?!\.mac)": {
+        "harness/display/derivation.py": "the heading beside the derived equation",
+        "harness/companion/": "the misprints of the paper",
+    },
+    r"sentences?": {"harness/companion/manual/misprints.md": "a filter of templates"},
     r"(?:its|their|first|second|the) rates?": {
         "harness/simulation/": "decay rates",
     },
@@ -118,7 +145,13 @@ PROSE = {  # by suffix: what is read by people in a file
     ".mac": re.compile(f"{COMMENT}|{STRING}", re.DOTALL),
     ".lisp": re.compile(rf";[^\n]*|{STRING}"),
     ".json": re.compile(rf'(?<="description": ){STRING}'),
+    ".md": re.compile(r"(?<=\n)(?!    ).+"),
+    ".toml": re.compile(rf"#[^\n]*|{STRING}"),
+    ".js": re.compile(rf"{COMMENT}|//[^\n]*", re.DOTALL),
+    ".c": re.compile(COMMENT, re.DOTALL),
+    ".h": re.compile(COMMENT, re.DOTALL),
 }
+BOOK = "harness/companion/book"
 
 
 def prose(file):
@@ -140,7 +173,9 @@ def proses():
     files = [
         each for name in ("harness", "maxima") for each in (ROOT / name).rglob("*") if each.suffix in {".py", *PROSE}
     ]
-    return {each.relative_to(ROOT).as_posix(): list(prose(each)) for each in files}
+    files += [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "tests/README.md")]
+    named = {each.relative_to(ROOT).as_posix(): each for each in files}
+    return {name: list(prose(each)) for name, each in named.items() if not name.startswith(BOOK)}
 
 
 @pytest.mark.parametrize("word", REPLACED_IN_PROSE)

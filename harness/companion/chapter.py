@@ -2,7 +2,7 @@
 
 A run in the head is ``name: function argument ...``, with a function of `runs`. An argument is a scene file below
 ``examples``, a scene, a number, a setting such as ``c=0``, or ``-`` for the default. Values and figures are expressions
-of Jinja; figures are SVG documents.
+of Jinja. Figures are SVG documents.
 """
 
 from collections.abc import Callable, Mapping

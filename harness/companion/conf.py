@@ -47,7 +47,7 @@ SERIF = '"Iowan Old Style", "Palatino Linotype", Palatino, "URW Palladio L", "P0
 
 
 def _colours(paper: str, leaf: str, ink: str, faint: str, rule: str, link: str, accent: str) -> dict[str, str]:
-    """Return the colours of our pieces and those of the theme that they belong to."""
+    """Return the colours of our parts and those of the theme that they belong to."""
     return {
         **{"paper": paper, "leaf": leaf, "ink": ink, "faint": faint, "rule": rule, "link": link, "accent": accent},
         "color-background-primary": paper,

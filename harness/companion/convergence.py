@@ -1,6 +1,6 @@
 """Convergence of the series of a motion: partial sums and radius of convergence.
 
-Partial sums follow the motion up to the radius of convergence, and leave it there. No order helps beyond. The more
+Partial sums agree with the motion up to the radius of convergence, and leave it there. No order helps beyond. The more
 terms, the more sharply they leave.
 
 Of the paper's example, under u = u0 + t the motion is singular where 1 + 2 u^2 = 0, at t = -u0 ± i/sqrt(2): the series

@@ -2,7 +2,7 @@
 
 ``{value}`EXPRESSION` `` is a value of the page's runs within a line, ``{show} EXPRESSION`` a block of it: a card of an
 equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
-templates. ``{show}`` without one takes a piece of template as its content. ``{run-figure} NAME`` is a figure of the
+templates. ``{show}`` without one takes a part of a template as its content. ``{run-figure} NAME`` is a figure of the
 chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
 ``{exercise} GRADE`` is a question with its ``{answer}``.
 """
@@ -42,7 +42,7 @@ FILES = "_runs"  # the folder of results of runs, in the folder of the pages
 
 
 class Show(SphinxDirective):
-    """HTML that an expression, or a piece of a template, makes of the runs."""
+    """HTML that an expression, or a part of a template, makes of the runs."""
 
     optional_arguments, final_argument_whitespace, has_content = 1, True, True
 
@@ -235,7 +235,7 @@ def _collecting(app: Sphinx) -> bool:
 
 
 def _rendered(env: BuildEnvironment, template: str) -> str:
-    """Return a piece of a template, rendered with the runs of the current page."""
+    """Return a part of a template, rendered with the runs of the current page."""
     shelf = env.temp_data[SHELF]
     return shelf.rendered(env.docname, template) if shelf else ""
 

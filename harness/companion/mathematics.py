@@ -211,7 +211,7 @@ def nothing_to_show(equation: Equation) -> str:
     Returns
     -------
     str
-        Sentence.
+        Message.
     """
     return translated(NOTHING.get(equation.number, UNCONSTRAINED))
 

@@ -1,4 +1,4 @@
-"""Pieces of pages from templates, as XHTML."""
+"""Parts of pages from templates, as XHTML."""
 
 import re
 from collections.abc import Iterable, Mapping, Sequence

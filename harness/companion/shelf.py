@@ -99,7 +99,7 @@ class Shelf:
         return self.known[name]
 
     def rendered(self, name: str, template: str) -> str:
-        """Return a piece of a page, rendered with the results of its chapter.
+        """Return a part of a page, rendered with the results of its chapter.
 
         Parameters
         ----------

@@ -255,7 +255,7 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
     derived = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
     for k, m, s in derived:
         if k > m:
-            raise NotComparable(f"christoffel[{k}, {m}, {s}], which christoffel[{m}, {k}, {s}] stands for")
+            raise NotComparable(f"christoffel[{k}, {m}, {s}], which is equal to christoffel[{m}, {k}, {s}]")
     at_rest = dict.fromkeys(checked.system.accelerations, sp.Integer(0))
     expected = {}
     for s, residual in enumerate(checked.stated.kinetic, 1):

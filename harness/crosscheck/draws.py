@@ -108,7 +108,7 @@ class Draws:
         Returns
         -------
         list of str
-            Sentences such as ``x - 1 is negative``.
+            Conditions such as ``x - 1 is negative``.
         """
         missing = []
         for i, branch in enumerate(self.branches):

@@ -1,6 +1,6 @@
 """Choose times for the comparison of control laws.
 
-They lie on each piece of a table, and on both sides of each switch.
+They lie on each polynomial of a table, and on both sides of each switch.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Functions = Callable[[mp.mpf], Sequence[mp.mpf]]
 
 
 def law_times(motion: DescribedMotion, problem: MotionProblem, span: tuple[mp.mpf, mp.mpf]) -> Iterator[mp.mpf]:
-    """Yield times within a span, one on each piece of a law and two at each boundary.
+    """Yield times within a span, one on each part of a law and two at each boundary.
 
     Parameters
     ----------

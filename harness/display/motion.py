@@ -160,7 +160,7 @@ def _quality(report: "Report") -> Iterator[str]:
 
     if report.correction is not None:
         name, size = report.correction
-        yield f"The initial state misses the constraints in its last digits and is corrected, {name} most, by {size}."
+        yield f"The last digits of the initial state are corrected to satisfy the constraints, {name} most, by {size}."
     if report.moved is not None:
         name, size = report.moved
         yield f"The initial state differs from initial_guess most in {name}, by {size}."
@@ -228,7 +228,7 @@ def rejection(violation: "AccuracyViolation") -> str:
     Parameters
     ----------
     violation : AccuracyViolation
-        Accuracy criterion that the motion misses.
+        Accuracy criterion that the motion violates.
 
     Returns
     -------

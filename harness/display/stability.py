@@ -158,7 +158,7 @@ def _exact_values(equilibrium: "Equilibrium") -> "Iterator[str]":
 
 
 def _number_of(equilibria: "Equilibria") -> str:
-    """Return a sentence on the number of equilibria found, and on their completeness."""
+    """Return a message on the number of equilibria found, and on their completeness."""
     found = f"{len(equilibria)} found from {equilibria.starts} starts"
     if equilibria.complete:
         return f"{found}; these are all: the equations have exactly {counted(len(equilibria), 'real solution')}."

@@ -53,7 +53,7 @@ class PlainConsole(Console):
         Yields
         ------
         Segment
-            Piece of text with its style, or a control segment.
+            Part of a text with its style, or a control segment.
         """
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=visible(segment.text))

@@ -87,7 +87,7 @@ def compile_c(program: Program) -> CFunction:
     Raises
     ------
     HolonomError
-        There is no C compiler, or it refuses the source.
+        There is no C compiler, or it rejects the source.
     """
     return CFunction(program, load_c(c_source(program)))
 

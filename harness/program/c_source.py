@@ -217,18 +217,18 @@ class SourceParts:
 def in_pieces(
     program: Program, target: Target, inputs: Sequence[str], writes: Sequence[str], function: str, parameters: str
 ) -> SourceParts:
-    """Return a program as statements of C, or as calls of pieces if it is long.
+    """Return a program as statements of C, or as calls of parts if it is long.
 
-    Values that a later piece needs are kept in an array ``w``.
+    Values that a later part needs are kept in an array ``w``.
 
     Parameters
     ----------
     program, target, inputs, writes
         As for `statements`.
     function : str
-        Beginning of the names of the pieces.
+        Prefix of the names of the parts.
     parameters : str
-        Parameters of the pieces, by which they read the inputs and write the outputs.
+        Parameters of the parts, by which they read the inputs and write the outputs.
 
     Returns
     -------

@@ -187,7 +187,7 @@ def measure_costs(costs: Costs) -> MeasuredCosts:
     Raises
     ------
     HolonomError
-        The C compiler refuses a program.
+        The C compiler rejects a program.
     """
     programs = [costs.program, *(part.program for part in costs.terms if part.program is not None)]
     programs += [each.otherwise for each in (*costs.effects, *costs.pairs) if each.otherwise is not None]

@@ -101,7 +101,7 @@ class MotionProblem:
     # the time, coordinates and velocities at the initial time, as decimal digits; the time alone where a parameter
     # without a value decides about the others
     start: Mapping[str, str]
-    # the given value that missed the constraints in its last digits and was corrected most, and by how much
+    # the given value whose last digits were corrected most to satisfy the constraints, and the correction
     correction: Correction | None
     obstruction: str | None  # why no order of pivots solves the equations of motion; None where one does
     # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
@@ -144,7 +144,7 @@ class MotionProblem:
     switching: Program | None = None
     tables: tuple[Table, ...] = ()  # of the law, each of more polynomials than one
     parameters: tuple[str, ...] = ()  # those that stay open
-    # their values in this motion; some may be missing where none is followed
+    # their values in this motion; some may be missing if none is integrated
     values: Mapping[str, Fraction] = field(default_factory=dict)
     parametric_start: ParametricStart | None = None  # None without open parameters
     given: tuple[str, ...] = ()  # of the state: what the scene gives at the initial time; the rest is found
@@ -250,7 +250,7 @@ def require_analytic(problem: MotionProblem) -> None:
     """
     require_signs_known(problem)
     if problem.reacting:
-        raise HolonomError(ErrorKind.REACTING, problem.scene, detail="and the motion is not followed by switching")
+        raise HolonomError(ErrorKind.REACTING, problem.scene, detail="and the motion is not integrated by switching")
     if problem.released:
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.released[0].of)
     if problem.tables:

@@ -26,7 +26,7 @@ from .request import Solve
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
-SHOWN = 60  # characters of a refused fragment that its refusal shows
+SHOWN = 60  # characters of a rejected fragment that the error shows
 DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
 

@@ -275,8 +275,8 @@ def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
 def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem]) -> MotionProblem:
     """Return a motion with the numbers of its laws as values of parameters.
 
-    The pieces of a law, of a table above all, differ only in their numbers. Motions with the same programs share them,
-    and their compiled functions.
+    The polynomials of a law, of a table above all, differ only in their numbers. Motions with the same programs share
+    them, and their compiled functions.
 
     Parameters
     ----------
@@ -467,7 +467,7 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
 def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
     """Return True if a factor made of signs alone is zero.
 
-    It removes all terms but one of a law in many pieces.
+    It removes all terms but one of a law in many parts.
     """
     for each in arguments:
         of_signs = isinstance(each, Call) and all(name in known for name in _names_met(each))

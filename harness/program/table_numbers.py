@@ -37,7 +37,7 @@ class PiecesOfTable:
     def __init__(self, table: Table, precision: Precision) -> None:
         begins = [precision.ratio(t) for t in table.begins]
         rows = ([precision.number(piece[place]) for piece in table.pieces] for place in range(1, len(table.inputs)))
-        self._numbers = np.array([begins, *rows])  # shape (5, pieces)
+        self._numbers = np.array([begins, *rows])  # shape (5, polynomials)
         self._knots = np.array([float(t) for t in begins[1:]])
 
     def at(self, times: Numbers, side: Literal["left", "right"] = "left") -> Numbers:
@@ -61,7 +61,7 @@ class PiecesOfTable:
 
 
 def pieces_of_tables(tables: Sequence[Table]) -> list[PiecesOfTable]:
-    """Return the pieces of each table in double precision.
+    """Return the polynomials of each table in double precision.
 
     Parameters
     ----------

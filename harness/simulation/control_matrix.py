@@ -59,7 +59,7 @@ class ControlMatrix(SignedFunctions):
         self._shape = tuple(max(map(int, numbers)) for numbers in zip(*places, strict=True))
         self._inputs = Inputs(problem, precision)
         self._evaluate = evaluation_once(problem, problem.servo_matrix, precision)
-        self._matrix_rows: Vector | None = None  # the rows whose determinant is followed
+        self._matrix_rows: Vector | None = None  # the rows whose determinant is computed along the motion
         self._scale: Numbers | float = 1.0  # of each row
 
     def lost(self, step: Step) -> float | None:

@@ -20,7 +20,7 @@ from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .inputs import Inputs
 from .matrices import Vector
 
-POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a piece to about the order of the Taylor engine
+POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a step to about the order of the Taylor engine
 MORE_DIGITS = 10  # in which they are found
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states that show whether power vanishes
 

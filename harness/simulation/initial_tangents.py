@@ -18,7 +18,7 @@ from .initial_state import least_step
 from .matrices import Matrices, MotionMatrices, start_of
 from .variation import Variation, size_of
 
-CONSISTENT = 1e-9  # of the terms of a constraint's rate: what it misses
+CONSISTENT = 1e-9  # of the terms of a constraint's time derivative: its residual
 RESIDUALS = "residual", "residual_rate"
 
 

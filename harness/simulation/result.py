@@ -46,7 +46,7 @@ class Report:
     moved : (str, str) or None
         The initial value that differs most from the scene's guess, and by how much, or None without a guess.
     segments : tuple of EngineSegment
-        Which engine followed the motion from when to when, and why.
+        Engine of each interval of the motion, and the reason for it.
     code : str
         How heyoka compiled the Taylor engine in the end (`Code`), empty where it did nothing.
     digits : int

@@ -101,7 +101,7 @@ def integrate(
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(parametrized_problem(problem, request), request, take, end, ending)
-        with doing("following the motion"), closing(prepared.motion):
+        with doing("integrating the motion"), closing(prepared.motion):
             return prepared.run(progress, watch)
 
 

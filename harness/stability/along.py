@@ -52,7 +52,7 @@ from .tangent import Tangent
 
 NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
 BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
-FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is followed
+FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is computed
 COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives is estimated
 CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
 RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same

@@ -482,7 +482,7 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     Raises
     ------
     HolonomError
-        The motion cannot be continued so far, ends before, or misses something out of proportion to the tolerance.
+        The motion cannot be continued so far, ends before, or has errors too large for the tolerance.
     """
     start = start_of(problem)
     if at is None or at == start[0]:
@@ -508,7 +508,7 @@ def simulated(problem: MotionProblem, request: SimulationRequest) -> Simulation:
     Raises
     ------
     HolonomError
-        The motion ends before the requested time, or misses something out of proportion to the tolerance.
+        The motion ends before the requested time, or has errors too large for the tolerance.
     """
     motion = simulate(problem, request)
     report = motion.report

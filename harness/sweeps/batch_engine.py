@@ -28,7 +28,7 @@ from ..simulation.nominal import nominal_of
 from .extremes import RESOLVED, Steps
 from .quantities import along_motion, expressions_of
 
-ELEMENTS = 16  # of a batch: what is followed fits into the caches nearest to the processor, and calls are few
+ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
 ELEMENTS_WITH_CALLBACK = 32  # where Python is called after each step
 BLOCK = 512  # steps between projections
 MOST_BLOCKS = 64
@@ -88,7 +88,7 @@ class BatchEngine:
     look : callable
         Makes numbers of these, given step by step: shape (numbers, elements).
     elements : int or None
-        Of a batch, 2 or more, or None for as many as are followed fastest.
+        Of a batch, 2 or more, or None for the number that is fastest.
     resolved : float
         As for `Steps.resolved`: other motions have not arrived.
     """

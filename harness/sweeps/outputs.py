@@ -146,7 +146,7 @@ def _tree(text: str) -> ast.expr:
 
 def _analytic(tree: ast.expr, text: str) -> Expression:
     if any(isinstance(node, ast.Name) and node.id == "abs" for node in ast.walk(tree)):
-        raise _error(text, "holds abs inside of what is followed along the motion; only max(abs(...)) may")
+        raise _error(text, "contains abs inside of a quantity along the motion; only max(abs(...)) may")
     return _expression(tree, text)
 
 

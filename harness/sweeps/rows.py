@@ -70,7 +70,7 @@ class Plan:
     tol: float = TOLERANCE  # tolerance of a step
     until: Fraction | None = None  # the last time; None for the end of the scene's time span
     stabilization: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
-    elements: int | None = None  # that are followed at once; None for as many as are followed fastest
+    elements: int | None = None  # that are integrated at once; None for the number that is fastest
 
 
 class RowMaker:

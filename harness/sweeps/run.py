@@ -143,7 +143,7 @@ def run_sweep(
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
     plan = Plan(problem, wanted.axes, wanted.outputs, wanted.tol, wanted.until, wanted.stabilization)
-    maker = RowMaker(plan)  # refuses what cannot be computed before there is a folder
+    maker = RowMaker(plan)  # rejects what cannot be computed before there is a folder
     target = SweepFolder(folder, _document(source.file, request, wanted, text, maker))
     with target.locked(wanted.resume):
         absent, altered = target.missing()

@@ -54,7 +54,7 @@ class TimeWatch:
         Returns
         -------
         ndarray of bool, shape (k,)
-            Which are to be followed one by one.
+            Rows to integrate one by one.
         tuple of float
             Times at which the others are to stop.
         """

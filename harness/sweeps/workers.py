@@ -27,7 +27,7 @@ TOGETHER = 4  # chunks of a task at most: to hand one out and to fetch it takes 
 ALLOCATOR_TRIM = (
     2**29
 )  # bytes that a worker does not give back at once; Dask's 64 KiB are given back and fetched each step
-LARGEST_BLOCK = 2**25  # bytes of the largest piece of what is kept
+LARGEST_BLOCK = 2**25  # bytes of the largest part of the outputs
 STARTS = 3  # attempts to start workers
 ADDRESS = re.compile(r"((tcp|tls|ws|wss)://)?([\w.-]+|\[[\da-fA-F:.]+\]):(?P<port>\d{1,5})", re.ASCII)
 PORTS = range(1, 2**16)

@@ -1,4 +1,4 @@
-"""Boxes: pieces of LaTeX with estimated widths.
+"""Boxes: parts of formulas in LaTeX with estimated widths.
 
 Widths are in digits: half an em, the width of "0". They only decide about line breaks, and belong to no particular
 typeface.
@@ -17,7 +17,7 @@ ACCENTS = ("", "dot", "ddot", "dddot")
 
 @dataclass(frozen=True)
 class Box:
-    """A piece of LaTeX in math mode, with its width, height and brackets.
+    """LaTeX in math mode, with its width, height and brackets.
 
     The width is in digits, the height in lines of text.
     """

@@ -29,7 +29,7 @@ PREAMBLE = r"""% Written by Holonom
 SPECIAL = {"\\": r"$\backslash$", "~": r"\~{}", "^": r"\^{}", "<": "$<$", ">": "$>$"} | {
     sign: f"\\{sign}" for sign in "{}$&#%_"
 }
-LAST_LATIN = "\u017f"  # of the letters that LaTeX composes in its own typeface
+LAST_LATIN = "\u017f"  # of the characters that LaTeX composes in its own typeface
 PUNCTUATION = "\u2013\u2014\u2018\u2019\u201c\u201d\u2026"
 
 

@@ -21,7 +21,7 @@ def latex(expression: Expr, width: float = inf) -> str:
     Parameters
     ----------
     expression : Expr
-        In the symbols of a derivation record: q1 is a letter with an index, dot(q1) the same under a dot, q1_0 and
+        In the symbols of a derivation record: q1 is a symbol with an index, dot(q1) the same under a dot, q1_0 and
         dot(q1)_0 their initial values, with a further index 0.
     width : float
         Width to keep to where the formula can be broken over lines, in digits of its typeface.
@@ -83,7 +83,7 @@ def latex_marked(tree: Tree, other: Tree, colour: str = MISPRINT, width: float =
     Parameters
     ----------
     tree, other : int, str, dict or list
-        Two equations of much the same form, for example as printed and as corrected.
+        Two equations of much the same form, for example as published and as corrected.
     colour : str
         Name of the colour, which a document defines: MISPRINT or CORRECTION.
     width : float

@@ -12,7 +12,7 @@ from ..extras import missing_package
 
 NAMESPACE = "http://www.w3.org/1998/Math/MathML"
 COLOURS = ("misprint", "correction")
-PUNCTUATION = {";", "!"}  # letters to latex2mathml
+PUNCTUATION = {";", "!"}  # characters to latex2mathml
 SIGNS = {"+", "\u2212"}
 BEFORE_A_PREFIX = {"=", "(", "[", ","}  # what a sign that belongs to one term alone stands after
 UNKNOWN_TO_CORE = ("columnspacing", "rowspacing", "columnalign", "fence")

@@ -19,7 +19,7 @@
   (and (symbolp x) (numbered-name-p (letters-of-name x) "lambda")))
 
 (defun $unused_name (letters names)
-  "The letters, as often as it takes until with a number behind them they name none of the names."
+  "The prefix, repeated until with a number after it it is none of the names."
   (let ((once (text-of-expression letters)) (texts (mapcar #'text-of-expression (cdr names))))
     (do ((prefix once (concatenate 'string prefix once)))
         ((not (any-of-p #'(lambda (text) (numbered-name-p text prefix)) texts))

@@ -64,7 +64,7 @@
               (t (setq waiting (append (cdr part) waiting))))))))
 
 (defun $name_around (before name after)
-  "The name with letters before it and after it; concat would take  set,  an operator, by its sign {."
+  "The name with a prefix and a suffix; concat would take  set,  an operator, by its sign {."
   (intern-invert-case (concatenate 'string "$" before (letters-of-name name) after)))
 
 (defun $dotted (dots x)

@@ -31,7 +31,7 @@ cosines: pairs [numerator, denominator] of those of 0, pi/n, 2 pi/n, ... 2 pi - 
         (push (round sum (* unit n (if (or (eql k 0) (eql k n)) 2 1))) coefficients)))))
 
 (defun $hypergeometric_sum (z p q unit)
-  "1 + z/(p(0) q(0)) + z^2/(p(0) p(1) q(0) q(1)) + ..., to shares of 1/unit; [a, b] stands for p(k) = a k + b."
+  "1 + z/(p(0) q(0)) + z^2/(p(0) p(1) q(0) q(1)) + ..., to shares of 1/unit; [a, b] means p(k) = a k + b."
   (let* ((shares (round (* unit (rational-of z)))) (term unit) (sum unit)
          (more-p (rational-of (second p))) (p (rational-of (third p)))
          (more-q (rational-of (second q))) (q (rational-of (third q))))

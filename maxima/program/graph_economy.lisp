@@ -140,7 +140,7 @@
                (product (product-of (list (factored divided nil) (letter-term letter)))))
           (factored (cons product outside) closed)))))
 
-;;; A letter is (node . 1) or (node . -1): a factor, or what is divided by.
+;;; A factor is (node . 1) or (node . -1), for a divisor.
 
 (defun letter-of-factor (factor) (cons (factor-node factor) (signum (factor-exponent factor))))
 (defun letter-term (letter) (power-of (node-term (car letter)) (cdr letter)))
@@ -154,7 +154,7 @@
   (product-of (list term (power-of (node-term (car letter)) (- (cdr letter))))))
 
 (defun commonest-letter (terms)
-  "The letter that most of the terms contain, if it is more than one of them."
+  "The factor that most of the terms contain, if it is more than one of them."
   (let ((counts nil) (best nil))
     (dolist (term terms)
       (dolist (factor (factors-of (term-node term)))
@@ -167,7 +167,7 @@
 
 ;;; ---- shared pairs ------------------------------------------------------------------------
 ;;;
-;;; A sum is a bag of terms, a product a bag of letters. Two members that stand together in
+;;; A sum is a bag of terms, a product a bag of factors. Two members that stand together in
 ;;; more than one bag, up to a common multiple, become a node of their own; the commonest
 ;;; pairs first, until no pair is left that stands in two bags.
 
@@ -195,7 +195,7 @@
       (mapcan #'repeated-letters (node-parts node))))
 
 (defvar *longest-power-written-out* 3
-  "Powers up to this one are taken for repeated letters: x^2*y may share x*y.")
+  "Powers up to this one are taken for repeated factors: x^2*y may share x*y.")
 
 (defun repeated-letters (factor)
   (let ((node (factor-node factor)) (exponent (factor-exponent factor)))

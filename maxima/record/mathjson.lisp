@@ -23,7 +23,7 @@
   (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a document's
     (write-file file (with-output-to-string (out) (write-json tree out) (terpri out)))))
 
-;;; All at once: GCL hands each piece to the system as it comes, by two calls.
+;;; All at once: GCL hands each part to the system as it comes, by two calls.
 (defun write-file (file text)
   (with-open-file (out file :direction :output :if-exists :supersede) (write-string text out))
   file)

@@ -33,7 +33,7 @@ EVALUATIONS = 1_000_000  # after them it counts as stuck
 class Arrived(NamedTuple):
     """The final state of a simulated motion, and the report on it."""
 
-    engine: str  # those that followed it, each once
+    engine: str  # those that integrated it, each once
     state: Vector  # shape (2n,): coordinates, then velocities
     # coordinates, constraint_forces: shape (n,): no constraint forces where the scene does not observe them
     coordinates: Vector

@@ -92,7 +92,7 @@ WHOLE_MOTION = (Group.TAYLOR, Group.RUNGE_KUTTA, Group.SOLVER)
 class Prepared:
     """A method ready to run."""
 
-    run: Callable[[], Any]  # follows the motion once, from its start
+    run: Callable[[], Any]  # integrates the motion once, from its initial time
     state: Callable[[Any], State]  # from what it returns to coordinates and velocities
     operations: Callable[[], int]  # arithmetic operations of a run, once it is done
 
@@ -105,7 +105,7 @@ class BenchmarkCase:
     # method, setting: for example ``Taylor, double`` and ``tol 1e-12``
     method: str
     setting: str
-    time: Fraction  # to which the motion is followed
+    time: Fraction  # to which the motion is integrated
     prepare: Callable[[], Prepared]  # compiles what has to be compiled
 
 

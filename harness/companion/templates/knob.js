@@ -52,7 +52,7 @@ const knob = (() => {
     return Object.fromEntries(program.outputs.map((name, k) => [name, results[k]]));
   }
 
-  /* The motion under settings { law, u0, omega, kappa, k, c, q1, q2, dot(q1), dot(q2) }: q3 and its rate follow from the constraint. */
+  /* The motion under settings { law, u0, omega, kappa, k, c, q1, q2, dot(q1), dot(q2) }: q3 and dot(q3) follow from the constraint. */
   function follow(settings, until = DATA.until, samples = DATA.samples) {
     const law = LAWS[settings.law], places = DATA.coordinates, rates = places.map(name => `dot(${name})`);
     const known = (t, y) => {
@@ -209,8 +209,8 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
     picture(document.getElementById("picture"), followed, now);
   }
 
-  /* What a listener is told when a change has ended. */
-  function tell() {
+  /* Announce the settings to a screen reader when a change has ended. */
+  function announce() {
     const status = form.querySelector("[role=status]");
     status.textContent = status.dataset.text.replace(/\{(\w+)\}/g, (_, name) => form.elements[name].value);
   }
@@ -238,7 +238,7 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
   function stop() {
     playing = false;
     play.textContent = play.dataset.play;
-    tell();
+    announce();
   }
 
   function start() {
@@ -249,7 +249,7 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
   }
 
   form.addEventListener("input", event => event.target === time ? show() : turn());
-  form.addEventListener("change", tell);
+  form.addEventListener("change", announce);
   play.addEventListener("click", () => playing ? stop() : start());
   form.hidden = false;
   turn();

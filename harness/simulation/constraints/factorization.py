@@ -235,7 +235,7 @@ class IndependentConstraints(FactoredConstraints):
             return splu(csc_array(compressed, shape=(k * size, k * size)), permc_spec="COLAMD", diag_pivot_thresh=1.0)
         except RuntimeError:
             for each in zip(mass, self._jacobian.reshape(k, g, n), strict=True):
-                weighted_constraints(*each)  # refuses masses that make it so
+                weighted_constraints(*each)  # rejects masses that make it so
             return None
 
     def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:

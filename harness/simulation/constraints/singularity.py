@@ -63,7 +63,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
         The rank of J on the constraints.
     float
         Time until the least singular value that counts vanishes, if it continues so, infinite where it grows, zero so
-        near a singular configuration that the state stands for one.
+        near a singular configuration that the state counts as one.
     """
     n, nominal = len(state) // 2, matrices.nominal
     speed = nominal.time * float(np.max(np.abs(state[n:]) / nominal.coordinates, initial=0.0))

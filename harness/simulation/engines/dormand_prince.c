@@ -15,7 +15,7 @@
 #define LEAST_GROWTH 0.333
 #define MOST_GROWTH 6.0
 
-enum { COORDINATES = STATE/2, ROWS = 8 };     /* of dense output: the state at the start, and seven coefficients */
+enum { COORDINATES = STATE/2, ROWS = 8 };     /* of dense output: the state at its beginning, and seven coefficients */
 
 struct follower {
     double t, *state;               /* where the motion has come                                       */

@@ -55,7 +55,7 @@ class FallbackEngine:
     Raises
     ------
     HolonomError
-        The engine asked for cannot follow this motion, or not in this precision or to this tolerance.
+        The requested engine cannot integrate this motion, or not in this precision or to this tolerance.
     """
 
     def __init__(self, task: Task, dense: bool | None = None) -> None:

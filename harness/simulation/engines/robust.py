@@ -37,7 +37,7 @@ ARC_ERROR = 1e-12  # relative error of an arc's coordinates that will do at any 
 OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of an arc that is not rounding
 LONGER = (1.0, 1.5, 2.25)  # lengths of an arc that are tried, in terms of one that reaches as far behind as before
 CLEAR = 0.5  # least singular value at the end of an arc, in terms of the one at its start
-SHORTER = 0.7  # after an arc was refused, the way to the singular configuration at which the next one is tried
+SHORTER = 0.7  # after an arc was rejected, the way to the singular configuration at which the next one is tried
 CLOSEST = 1e-7  # such a way, relative to the time or to its nominal size, at which the search for an arc is given up
 PLACE = 1e-6  # share of an arc to which the place of the singular configuration is found
 UNTRUSTED = 1e-6  # relative singular values in which no digits are left
@@ -323,7 +323,7 @@ class RobustEngine:
         self._least = self._least_at(t, self.state)
         self._solver.y, self._solver.f = self.state, np.concatenate([self.state[self.n :], accelerations])
         self.time, self._vanishing = t, extrapolated_zero(before, last, t, self._least)
-        if t < self._met < self._vanishing:  # where a step that was refused found no accelerations
+        if t < self._met < self._vanishing:  # if a step that was rejected found no accelerations
             self._vanishing = self._met
 
     def _settled(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:

@@ -51,7 +51,7 @@ class TaylorEngine(ProgramEngine):
     matrices : MotionMatrices or None
         Of the same motion. None to make them.
     end : number or None
-        The last time of the motion, or None for the next one to which it is followed.
+        The last time of the motion, or None for the next one that it reaches.
 
     Raises
     ------
