@@ -62,6 +62,7 @@ REPLACED_IN_PROSE = {
     r"at (?:the|a) start|of (?:the|a) start|from the start": "initial time, initial state",
     r"(?<!there )(?:is|are) no(?! longer| later| other)": "is not",
     r"stand(?:s|ing)? for": "is, means, replaces",
+    r"(?:is|are|was|were|be|been) refused|refuses|refusing": "is an error, reject, not supported",
     r"sentences?": "message",
     r"kinks?": "corner",
     r"the print|(?:as|in) print|as printed(?!\.mac)": "the published version, as published",

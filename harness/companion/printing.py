@@ -169,7 +169,7 @@ def browser() -> str:
 def _printed(page: Path) -> Path:
     """Return the PDF that the browser makes of a page."""
     printed = page.with_suffix(".pdf")
-    root = ["--no-sandbox"] if os.geteuid() == 0 else []  # Chromium's sandbox refuses to be set up by root
+    root = ["--no-sandbox"] if os.geteuid() == 0 else []  # Chromium's sandbox cannot be set up by root
     command = [browser(), *PRINT, *root, f"--user-data-dir={page.parent / 'profile'}", f"--print-to-pdf={printed}"]
     try:
         done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=PATIENCE)

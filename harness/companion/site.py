@@ -65,7 +65,7 @@ def make_site(
         folder = directory if first else directory / language
         shelf = Shelf(chapters, language, folder / FILES, result_folder, results, done)
         if scenes:
-            shelf.perform(chapters)  # where one is refused, nothing is written
+            shelf.perform(chapters)  # if one has an error, nothing is written
         with speaking(language):
             folders = {each: _from(language, each, languages[0]) for each in languages if each != language}
             sources = _texts_about(scenes, folder) if scenes else SOURCES

@@ -7,7 +7,7 @@
   (remove #\\ (if (plainly-written-p e) (letters-of-name e) (text-of-expression e))))
 
 (defun plainly-written-p (e)
-  "Whether it is a name that Maxima shows letter by letter."
+  "Whether it is a name that Maxima shows character by character."
   (and (maxima-name-p e) (not (get e 'op)) (not (get e 'reversealias))))
 
 (defun text-of-expression (e) (coerce (mstring e) 'string))

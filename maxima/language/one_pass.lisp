@@ -113,7 +113,7 @@
 
 (defun $equationp (e) (and (consp e) (eq (caar e) 'mequal)))
 
-(defun $doubtful_values (table items)
+(defun $values_to_verify (table items)
   "The items that are not  name = rational number  with a name that the table has."
   (mlist-of (remove-if #'(lambda (item) (and ($equationp item) (gethash (second item) table) ($ratnump (third item))))
                        (cdr items))))

@@ -4,7 +4,7 @@
 ;;;
 ;;;     ["Which", condition, value, ..., "True", value]     ["Max", a, b]     ["Table", k, "t"]: of "tables", from 0 on
 ;;;
-;;; Nothing is evaluated while the document is read: a function that is not known is refused.
+;;; Nothing is evaluated while the document is read: an unknown function is an error.
 
 (in-package :maxima)
 
@@ -31,7 +31,7 @@
 (defun $described_tables (tables) (setq *tables-described* (cdr tables)) tables)
 
 (defun $json_described (entry e)
-  "An expression; what no document can hold is refused where the entry that holds it is known."
+  "An expression. One that no document can hold is an error where the entry is known."
   (let ((unknown (unknown-operator e)))
     (if unknown ($refuse '$function_not_described entry unknown) (list '($json_expression) e))))
 
