@@ -4,8 +4,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ..crosscheck.lagranges_method import OPINION
-from ..crosscheck.report import EquationVerdict, Verdict
+from ..crosscheck.report import OPINION, EquationVerdict, Verdict
 from ..errata import PrintedEquation
 from ..language import translatable
 from ..record import Equation, Scene

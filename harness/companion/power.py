@@ -6,11 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 import sympy
 from numpy.typing import NDArray
-from scipy.integrate import cumulative_simpson
 from sympy import Expr, Symbol
 
-from ..crosscheck.independent import power_of_forces, reaction_power
-from ..crosscheck.system import described_system
 from ..record import Scene, System
 from ..simulation.result import Simulation
 from .expressions import under
@@ -51,6 +48,11 @@ def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBa
     EnergyBalance
         Work and energy along the motion.
     """
+    from scipy.integrate import cumulative_simpson
+
+    from ..crosscheck.independent import power_of_forces, reaction_power
+    from ..crosscheck.system import described_system
+
     described = described_system(system, scene.effects)
     power, forces, kinetic = (
         values_along(expression, scene, motion)

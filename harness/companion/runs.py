@@ -11,30 +11,26 @@ from dataclasses import dataclass
 from fractions import Fraction
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..crosscheck.check import check_record
-from ..crosscheck.report import CheckReport
 from ..errata import errata  # noqa: F401, for the heads of pages
 from ..failures import ErrorKind, HolonomError
-from ..free_motion import FreeMotion, free_motion
 from ..processes import die_with_parent
-from ..program.effects import MeasuredCosts, scene_costs
-from ..program.motion_problem import motion_problem
-from ..program.request import Request
-from ..record import Record, derived_record
+from ..record import derived_record
 from ..sandbox import Limits
-from ..scene import load
-from ..series.compute import compute_series
-from ..series.power_series import MotionSeries
-from ..series.request import SeriesRequest
-from ..simulation.request import SimulationRequest
-from ..simulation.result import Simulation
-from ..simulation.simulate import simulate
+from ..scene import Scene
 from ..source import Source, describe
-from ..stability.along import LinearizedMotion
-from ..stability.linearization import Linearization
 from ..temporary import private_directory
+
+if TYPE_CHECKING:
+    from ..crosscheck.report import CheckReport
+    from ..free_motion import FreeMotion
+    from ..program.effects import MeasuredCosts
+    from ..record import Record
+    from ..series.power_series import MotionSeries
+    from ..simulation.result import Simulation
+    from ..stability.along import LinearizedMotion
+    from ..stability.linearization import Linearization
 
 WORKERS = 2
 Settings = tuple[tuple[str, str], ...]
@@ -55,8 +51,8 @@ class Run:
 class Derived:
     """A record and the verdicts on it."""
 
-    record: Record
-    report: CheckReport
+    record: "Record"
+    report: "CheckReport"
 
 
 @dataclass(frozen=True)
@@ -74,18 +70,18 @@ class FileAnswers:
     """
 
     derived: Derived
-    free: Mapping[str, FreeMotion | FailedRun]  # by scene
-    series: Mapping[str, MotionSeries | FailedRun]  # by scene
+    free: "Mapping[str, FreeMotion | FailedRun]"  # by scene
+    series: "Mapping[str, MotionSeries | FailedRun]"  # by scene
 
     @property
-    def record(self) -> Record:
+    def record(self) -> "Record":
         """The record that Maxima derived."""
         return self.derived.record
 
     @property
     def titles(self) -> dict[str, str]:
         """Title of each scene, by default its name."""
-        expanded = {name: answer.title for name, answer in self.series.items() if isinstance(answer, MotionSeries)}
+        expanded = {name: answer.title for name, answer in self.series.items() if not isinstance(answer, FailedRun)}
         return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
 
 
@@ -106,6 +102,8 @@ def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAUL
     Derived
         Record and verdicts.
     """
+    from ..crosscheck.check import check_record
+
     source = Source(file, limits)
     record = derived_record(source, dict(settings), limits)
     return Derived(record, check_record(record, source.description(dict(settings))))
@@ -113,7 +111,7 @@ def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAUL
 
 def free(
     file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
-) -> FreeMotion:
+) -> "FreeMotion":
     """Return the free motion of a scene.
 
     Parameters
@@ -132,7 +130,7 @@ def free(
     FreeMotion
         Free motion.
     """
-    return free_motion(file, scene, dict(settings), limits)
+    return Scene(file, scene, dict(settings), limits).free()
 
 
 def series(
@@ -142,7 +140,7 @@ def series(
     settings: Settings = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
     sensitivities: tuple[str, ...] = (),
-) -> MotionSeries:
+) -> "MotionSeries":
     """Return the power series of a scene's motion, with its radius of convergence.
 
     Parameters
@@ -165,8 +163,7 @@ def series(
     MotionSeries
         Power series.
     """
-    request = SeriesRequest(order, scene, settings=dict(settings), sensitivities=sensitivities)
-    motion = compute_series(file, request, limits)
+    motion = Scene(file, scene, dict(settings), limits).series(order=order, sensitivities=sensitivities)
     motion.radius  # noqa: B018
     return motion
 
@@ -177,7 +174,7 @@ def simulation(
     until: Fraction | None = None,
     samples: int | None = None,
     settings: Settings = NO_SETTINGS,
-) -> Simulation:
+) -> "Simulation":
     """Return a scene's motion through its time span or to a time.
 
     Parameters
@@ -198,11 +195,10 @@ def simulation(
     Simulation
         Simulated motion.
     """
-    problem = motion_problem(file, Request(scene, settings=dict(settings)), DEFAULT_LIMITS)
-    return simulate(problem, SimulationRequest(until=until, samples=samples))
+    return Scene(file, scene, dict(settings), DEFAULT_LIMITS).simulate(until=until, samples=samples)
 
 
-def linearized(file: Path, scene: str, at: int) -> Linearization:
+def linearized(file: Path, scene: str, at: int) -> "Linearization":
     """Return the linear system about a motion at a time.
 
     Parameters
@@ -219,10 +215,10 @@ def linearized(file: Path, scene: str, at: int) -> Linearization:
     Linearization
         Linear system as `holonom linearize` finds it.
     """
-    return load(file, scene=scene).linearize(at=at)
+    return Scene(file, scene, {}, DEFAULT_LIMITS).linearize(at=at)
 
 
-def linearized_along(file: Path, scene: str, until: int, samples: int) -> LinearizedMotion:
+def linearized_along(file: Path, scene: str, until: int, samples: int) -> "LinearizedMotion":
     """Return the linear system along a motion.
 
     Parameters
@@ -241,10 +237,10 @@ def linearized_along(file: Path, scene: str, until: int, samples: int) -> Linear
     LinearizedMotion
         Linear system as `holonom linearize-along` finds it.
     """
-    return load(file, scene=scene).linearize_along(until=until, samples=samples)
+    return Scene(file, scene, {}, DEFAULT_LIMITS).linearize_along(until=until, samples=samples)
 
 
-def effects(file: Path, scene: str) -> MeasuredCosts:
+def effects(file: Path, scene: str) -> "MeasuredCosts":
     """Return the costs of the effects of a scene.
 
     Parameters
@@ -259,7 +255,7 @@ def effects(file: Path, scene: str) -> MeasuredCosts:
     MeasuredCosts
         Costs as `holonom effects` reports them.
     """
-    return scene_costs(file, Request(scene), DEFAULT_LIMITS)
+    return Scene(file, scene, {}, DEFAULT_LIMITS).effects()
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:

@@ -19,7 +19,7 @@ from .initial_motion import CheckedScene
 from .premises import Difference, Premises, differences, premises_of
 from .redundancy import verify_redundancy
 from .relations import NotComparable
-from .report import CheckReport, CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
+from .report import OPINION, CheckReport, CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .seed import fresh_seed
 from .skeleton import (
     CLOSED_NUMBERS,
@@ -121,9 +121,7 @@ class _Check:
         from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
 
         if lagranges_method.can_take(checked.known.system):
-            yield self._verify(
-                place, lagranges_method.OPINION, lambda: lagranges_method.compare(checked.known), checked.system
-            )
+            yield self._verify(place, OPINION, lambda: lagranges_method.compare(checked.known), checked.system)
         yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, checked.size)
         solved = [each for each in derived.equations if each.id in ("multipliers", "accelerations")]
         operations = operations_of(solved) if closed else None

@@ -14,11 +14,8 @@ from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dyna
 
 from .independent import IndependentEquations
 from .linear import LinearEquations
-from .report import Item
 from .system import MechanicalSystem, dotted
 from .verdict import Comparison, Pair
-
-OPINION = Item("lagranges_method", "2", "Lagrange's equations (SymPy LagrangesMethod)")
 
 LARGEST_SYSTEM = 24
 """Most coordinates and constraints together: the method multiplies dense matrices in symbols."""

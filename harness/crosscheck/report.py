@@ -49,6 +49,9 @@ class Item(NamedTuple):
     name: str
 
 
+OPINION = Item("lagranges_method", "2", "Lagrange's equations (SymPy LagrangesMethod)")
+
+
 class Place(NamedTuple):
     """The place of a verdict: a derivation and a scene of it or none.
 

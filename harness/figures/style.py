@@ -95,8 +95,8 @@ def figure_style() -> Iterator[None]:
     matplotlib = import_matplotlib()
     with matplotlib.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)  # the reader may have the font
-        matplotlib.rcParams.update(matplotlib.rcParamsDefault)
-        matplotlib.rcParams.update({**SETTINGS, "font.sans-serif": _fonts()})
+        default = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
+        matplotlib.rcParams.update({**default, **SETTINGS, "font.sans-serif": _fonts()})  # no backend, so no pyplot
         matplotlib.rcParams["axes.prop_cycle"] = matplotlib.cycler(color=PALETTE)
         yield
 

@@ -38,7 +38,9 @@ def copied(folder):
     """Copy the texts of the book and the manual, with what they include of the repository. Return their folder."""
     for name in ("tests", "examples", "maxima"):
         (folder / name).symlink_to(REPOSITORY / name)
-    return Path(shutil.copytree(SOURCES, folder / "harness" / "companion"))
+    texts = Path(shutil.copytree(SOURCES, folder / "harness" / "companion"))
+    (texts.parent / "schemas").symlink_to(REPOSITORY / "harness" / "schemas")
+    return texts
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,8 @@
 """The runs of a book, performed by processes, and builds that take what an earlier one has."""
 
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -32,3 +34,15 @@ def test_a_second_build_reads_only_the_chapter_that_has_changed(made_companion, 
         trees / "book" / "free-motion.doctree"
     }
     assert list(shelf.known) == ["book/free-motion"]
+
+
+def test_chapters_import_nothing_that_only_runs_and_figures_need():
+    """A second build with one chapter changed is to be short, and imports were a third of it."""
+    asked = (
+        "import sys, holonom.companion.site\n"
+        "from holonom.companion.chapter import chapters_of_the_paper\n"
+        "assert 'hard-cases' in chapters_of_the_paper()\n"
+        "print(*{'matplotlib', 'scipy.integrate', 'scipy.optimize', 'sympy.physics', 'heyoka'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []

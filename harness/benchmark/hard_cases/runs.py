@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from mpmath import mpf
-from scipy.integrate import solve_ivp
 
 from ...files import shared
 from ...language import translatable
@@ -153,6 +152,8 @@ def baseline_motion(motion: MotionProblem, until: float) -> Vector:
     Vector, shape (2n,)
         The last state, nan if the integration fails.
     """
+    from scipy.integrate import solve_ivp
+
     matrices, n = MotionMatrices(motion), len(motion.coordinates)
     left = iter(range(EVALUATIONS))
 
