@@ -163,7 +163,7 @@ class Description:
     def unused_parameters(self) -> tuple[str, ...]:
         """Parameters that the system declares, but neither it nor a scene uses."""
         system = {key: value for key, value in self.content["system"].items() if key != "parameters"}
-        used = set(_strings([system, *({**scene, "parameter_values": []} for scene in self.content["scenes"])]))
+        used = _strings([system, *({**scene, "parameter_values": []} for scene in self.content["scenes"])])
         return tuple(name for name in self.content["system"]["parameters"] if name not in used)
 
     @property
@@ -269,13 +269,16 @@ def _texts(content: dict[str, Any]) -> Iterator[str]:
         yield part.get("source") or ""
 
 
-def _strings(part: Any) -> Iterator[str]:
-    """Yield all texts of a part of a document, names among them."""
-    if isinstance(part, str):
-        yield part
-    elif isinstance(part, dict | list):
-        for each_part in part.values() if isinstance(part, dict) else part:
-            yield from _strings(each_part)
+def _strings(part: Any) -> set[str]:
+    """Return all texts of a part of a document, names among them."""
+    texts, waiting = set(), [part]
+    while waiting:
+        each_part = waiting.pop()
+        if isinstance(each_part, str):
+            texts.add(each_part)
+        elif isinstance(each_part, dict | list):
+            waiting += each_part.values() if isinstance(each_part, dict) else each_part
+    return texts
 
 
 def _system(system: dict[str, Any]) -> System:

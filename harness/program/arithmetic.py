@@ -52,13 +52,11 @@ class Arithmetic(Generic[Value]):
         Value
             Form in the target.
         """
-        match expression:
-            case Call(Operation.POWER, (base, Fraction() as exponent)):
-                return self.power(self.value(base, names), exponent)
-            case Call(operation, arguments):
-                return self.operations[operation](*(self.value(argument, names) for argument in arguments))
-            case atom:
-                return self.atom(atom, names)
+        if not isinstance(expression, Call):
+            return self.atom(expression, names)
+        if expression.operation is Operation.POWER and isinstance(exponent := expression.arguments[1], Fraction):
+            return self.power(self.value(expression.arguments[0], names), exponent)
+        return self.operations[expression.operation](*[self.value(each, names) for each in expression.arguments])
 
     def atom(self, atom: Atom, names: Mapping[str, Value]) -> Value:
         """Return the form of a name, a number or a constant.
@@ -75,13 +73,9 @@ class Arithmetic(Generic[Value]):
         Value
             Form in the target.
         """
-        match atom:
-            case Name(text):
-                return names[text]
-            case Constant():
-                return self.constants[atom]
-            case number:
-                return self.number(number)
+        if isinstance(atom, Name):
+            return names[atom.text]
+        return self.constants[atom] if isinstance(atom, Constant) else self.number(atom)
 
 
 def run_program(program: Program, inputs: Mapping[str, Value], arithmetic: Arithmetic[Value]) -> dict[str, Value]:

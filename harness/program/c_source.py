@@ -306,7 +306,8 @@ def body_of(lines: Iterable[str], parameters: Iterable[str]) -> str:
     str
     """
     text = "\n".join(lines)
-    unused = [name for name in parameters if not re.search(rf"\b{name}\b", text)]
+    words = set(re.findall(r"\w+", text))
+    unused = [name for name in parameters if name not in words]
     return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
 
 

@@ -1,7 +1,7 @@
 """Formulas in the common syntax of C and Python, with minimal parentheses."""
 
-from dataclasses import dataclass
 from enum import IntEnum
+from typing import NamedTuple
 
 
 class Rank(IntEnum):
@@ -14,8 +14,7 @@ class Rank(IntEnum):
     ATOM = 4
 
 
-@dataclass(frozen=True)
-class Formula:
+class Formula(NamedTuple):
     """Text and how tightly it holds together."""
 
     text: str

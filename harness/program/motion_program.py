@@ -13,7 +13,7 @@ terms: its operations are what the program costs, and their order decides the la
 
 import re
 from collections.abc import Iterator, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from typing import Any
@@ -37,7 +37,7 @@ Operation = StrEnum(
 )
 """The operations of a program; the value is the head of the MathJSON tree."""
 
-OPERATIONS = frozenset(Operation)
+OPERATIONS = {operation.value: operation for operation in Operation}
 VARIADIC = frozenset({Operation.ADD, Operation.MULTIPLY})
 BINARY = frozenset({Operation.SUBTRACT, Operation.DIVIDE, Operation.POWER}) | {
     Operation(each.head) for each in CALLED if each.arity == 2
@@ -67,6 +67,11 @@ class Call:
 
     operation: Operation
     arguments: tuple["Expression", ...]
+    names: frozenset[str] = field(init=False, repr=False, compare=False)  # of the values that it is made of
+
+    def __post_init__(self) -> None:
+        """Collect the names, which are asked for many times."""
+        object.__setattr__(self, "names", frozenset().union(*map(names_in, self.arguments)))
 
 
 Atom = Name | Fraction | Constant
@@ -185,13 +190,9 @@ def names_in(expression: Expression) -> Set[str]:
     -------
     set of str
     """
-    match expression:
-        case Name(text):
-            return {text}
-        case Call(_, arguments):
-            return set().union(*map(names_in, arguments))
-        case _:
-            return set()
+    if isinstance(expression, Call):
+        return expression.names
+    return {expression.text} if isinstance(expression, Name) else set()
 
 
 def names_used(program: Program) -> Set[str]:
@@ -246,18 +247,14 @@ def expression_of(tree: object, levels: int = DEEPEST) -> Expression:
     HolonomError
         It is not an expression that a program can hold.
     """
-    match tree:
-        case ["Rational", *_]:
-            return _atom(tree)
-        case [str(head), *arguments] if levels and _takes(head, len(arguments)):
-            return Call(Operation(head), tuple(expression_of(argument, levels - 1) for argument in arguments))
-        case _:
-            return _atom(tree)
+    if levels and isinstance(tree, list) and tree and _takes(tree[0], len(tree) - 1):
+        return Call(OPERATIONS[tree[0]], tuple([expression_of(argument, levels - 1) for argument in tree[1:]]))
+    return _atom(tree)
 
 
-def _takes(head: str, arguments: int) -> bool:
+def _takes(head: object, arguments: int) -> bool:
     """Return True if there is an operation of that head with this number of arguments."""
-    if head not in OPERATIONS:
+    if not isinstance(head, str) or head not in OPERATIONS:
         return False
     if head in VARIADIC:
         return arguments >= 1
@@ -265,11 +262,11 @@ def _takes(head: str, arguments: int) -> bool:
 
 
 def _atom(tree: object) -> Atom:
-    match tree:
-        case "ImaginaryUnit" | "True" | "False":
+    if isinstance(tree, str):
+        if tree in ("ImaginaryUnit", "True", "False"):
             raise _error(f"{tree} is not a real number")
-        case str():
-            return Constant(tree) if tree in CONSTANTS else Name(tree)
+        return Constant(tree) if tree in CONSTANTS else Name(tree)
+    match tree:
         case ["Rational", numerator, denominator] if _number(denominator):
             return _within_double(_number(numerator) / _number(denominator))
         case _:
@@ -308,8 +305,8 @@ def _require_straight_line(program: Program) -> None:
 
 
 def _require_known(names: Set[str], known: Set[str]) -> None:
-    if unknown := sorted(names - known):
-        raise _error(f"{unknown[0]} is used before it is computed")
+    if not names <= known:
+        raise _error(f"{min(names - known)} is used before it is computed")
 
 
 def _error(detail: str) -> HolonomError:
