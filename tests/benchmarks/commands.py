@@ -14,7 +14,7 @@ from math import log, sin
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from timing import cost_of_command, program_of_command
+from timing import cost_of_command, program_of_command, write_report
 
 sys.path.append(str(Path(__file__).parents[1] / "simulation"))
 
@@ -91,10 +91,7 @@ def bar(what: str, value: float, limit: float) -> str:
 def main(directory: Path) -> None:
     """Measure, and write ``commands.txt`` into a directory."""
     cost_of_command("derive", str(EXAMPLES / "pendulum.mac"))  # an image of Maxima is made where there is none yet
-    directory.mkdir(parents=True, exist_ok=True)
-    text = "\n".join([*derivations(), "", *linkage(), "", *tables()]) + "\n"
-    (directory / "commands.txt").write_text(text, encoding="utf-8")
-    print(text)
+    write_report(directory / "commands.txt", "\n".join([*derivations(), "", *linkage(), "", *tables()]) + "\n")
 
 
 if __name__ == "__main__":

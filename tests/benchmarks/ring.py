@@ -20,7 +20,7 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 from peers import instructions
-from timing import program_of_command
+from timing import program_of_command, write_report
 
 from holonom.program.c_function import compile_c
 from holonom.program.motion_program import Program, count_operations, read_program
@@ -178,10 +178,7 @@ def exponent(a: Row, b: Row) -> float:
 def main(directory: Path) -> None:
     """Measure, and write ``ring.txt`` into a directory."""
     our_program(EXAMPLE, 3)  # an image of Maxima is made where there is none yet
-    directory.mkdir(parents=True, exist_ok=True)
-    text = report([measured(bodies) for bodies in BODIES])
-    (directory / "ring.txt").write_text(text, encoding="utf-8")
-    print(text)
+    write_report(directory / "ring.txt", report([measured(bodies) for bodies in BODIES]))
 
 
 if __name__ == "__main__":

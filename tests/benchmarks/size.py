@@ -13,7 +13,7 @@ from itertools import pairwise
 from math import log
 from pathlib import Path
 
-from timing import program_of_command
+from timing import program_of_command, write_report
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 LINKS = (64, 128, 256, 512, 1024, 2048)
@@ -71,10 +71,7 @@ def _exponent(a: Row, b: Row) -> float:
 def main(directory: Path) -> None:
     """Measure, and write ``size.txt`` into a directory."""
     measured(2)  # an image of Maxima is made where there is none yet
-    directory.mkdir(parents=True, exist_ok=True)
-    text = report([measured(links) for links in LINKS])
-    (directory / "size.txt").write_text(text, encoding="utf-8")
-    print(text)
+    write_report(directory / "size.txt", report([measured(links) for links in LINKS]))
 
 
 if __name__ == "__main__":

@@ -56,6 +56,13 @@ def cost_of_command(*arguments: str) -> tuple[float, float]:
     return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
 
 
+def write_report(file: Path, text: str) -> None:
+    """Write a table into a file, whose directory is made where it is missing, and print it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text, encoding="utf-8")
+    print(text)
+
+
 def as_installed() -> dict[str, str]:
     """The environment for a whole command: Python keeps what it compiles, as it does for an installed package."""
     return {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}

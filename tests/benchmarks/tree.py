@@ -12,6 +12,7 @@ from math import log
 from pathlib import Path
 
 from ring import casadi_program, evaluations, our_program
+from timing import write_report
 
 from holonom.program.motion_program import count_operations
 
@@ -69,10 +70,7 @@ def report(rows: list[Row]) -> str:
 def main(directory: Path) -> None:
     """Measure, and write ``tree.txt`` into a directory."""
     our_program(SCENE, 3)  # an image of Maxima is made where there is none yet
-    directory.mkdir(parents=True, exist_ok=True)
-    text = report([measured(bodies) for bodies in BODIES])
-    (directory / "tree.txt").write_text(text, encoding="utf-8")
-    print(text)
+    write_report(directory / "tree.txt", report([measured(bodies) for bodies in BODIES]))
 
 
 if __name__ == "__main__":
