@@ -4,8 +4,8 @@
 ;;; 10^-20, a cosine where its argument would have to change by such a share. No number is compared with a fixed size,
 ;;; so that scaling a row or a column changes no rank.
 ;;;
-;;; The rank is found by elimination, a row at a time, with the pivot in the column that fewest rows share; a point on
-;;; the manifold f = 0 by Newton's method, each correction the shortest. What f leaves of a zero is 10^-55 then.
+;;; A point on the manifold f = 0 is found by Newton's method, each correction the shortest (echelon.lisp). What f leaves
+;;; of a zero is 10^-55 then.
 
 (in-package :maxima)
 
@@ -14,7 +14,6 @@
 (defvar *zero-share-of-constraints* (expt 10 -55))
 (defvar *zero-share-of-floats* 1d-12)
 (defvar *small-coordinate* (expt 10 -20))
-(defvar *pivot-ratio* 10000 "The largest entry of a row is at most this many times its pivot.")
 (defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
 (defvar *most-corrections* 400)
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
@@ -138,84 +137,6 @@
   (cons '(mlist) (mapcar #'(lambda (e) (list '(mlist) (car e) (maxima-number (cdr e)))) row)))
 
 (defun row-from-maxima (row) (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row)))
-
-;;; ---- elimination -------------------------------------------------------------------------
-
-(defstruct echelon
-  pivots                                   ; list of (column . row), the last first
-  dependent)                               ; numbers of the rows that depend on those before them
-
-(defun echelon-of (rows)
-  "Elimination row by row. Column 0, if there is one, is a right-hand side."
-  (let ((rows (coerce rows 'vector)) (holders (make-hash-table)) (found (make-echelon)))
-    (dotimes (i (length rows)) (dolist (e (aref rows i)) (push i (gethash (car e) holders))))
-    (dotimes (i (length rows) found)
-      (let ((pivot (chosen-pivot (aref rows i) holders)))
-        (cond ((null pivot) (push (1+ i) (echelon-dependent found)))
-              (t (push (cons (car pivot) (aref rows i)) (echelon-pivots found))
-                 (eliminate-column pivot i rows holders)))))))
-
-(defun chosen-pivot (row holders)
-  "Of the entries that are not too small in their row, the one that fewest rows share."
-  (let ((largest 0) (pivot nil) (fewest nil))
-    (dolist (e row) (if (plusp (car e)) (setq largest (max largest (abs (cdr e))))))
-    (dolist (e row pivot)
-      (if (and (plusp (car e)) (>= (* *pivot-ratio* (abs (cdr e))) largest))
-          (let ((count (length (gethash (car e) holders))))
-            (if (or (null fewest) (< count fewest)) (setq pivot e fewest count)))))))
-
-(defun eliminate-column (pivot i rows holders)
-  (dolist (k (gethash (car pivot) holders))
-    (let ((entry (if (> k i) (assoc (car pivot) (aref rows k)))))
-      (if entry
-          (setf (aref rows k)
-                (row-less-multiple (aref rows k) (short-number (/ (cdr entry) (cdr pivot)))
-                                   (aref rows i) (car pivot) k holders))))))
-
-(defun row-less-multiple (row multiple other column k holders)
-  "row - multiple*other, without the column that vanishes. New entries are passed to the holders."
-  (let ((result nil))
-    (do () ((and (null row) (null other)) (nreverse result))
-      (cond ((or (null other) (and row (< (caar row) (caar other))))
-             (push (pop row) result))
-            ((or (null row) (< (caar other) (caar row)))
-             (push k (gethash (caar other) holders))
-             (push (cons (caar other) (short-number (- (* multiple (cdr (pop other)))))) result))
-            (t (let* ((e (pop row))
-                      (value (sum-of-numbers (list (cdr e) (- (* multiple (cdr (pop other))))))))
-                 (if (and (/= (car e) column) (not (zerop value))) (push (cons (car e) value) result))))))))
-
-(defun substituted-back (echelon values)
-  "Values of the pivots' columns, the others and that of the right-hand side, column 0, given."
-  (dolist (pivot (echelon-pivots echelon) values)
-    (let ((sum 0) (own nil))
-      (dolist (e (cdr pivot))
-        (if (eql (car e) (car pivot))
-            (setq own (cdr e))
-            (incf sum (* (cdr e) (gethash (car e) values 0)))))
-      (setf (gethash (car pivot) values) (short-number (/ (- sum) own))))))
-
-(defun $rank_of_rows (rows) (length (echelon-pivots (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
-
-(defun $independent_rows (rows)
-  "Numbers of the rows that do not depend on those before them."
-  (let ((dependent (echelon-dependent (echelon-of (mapcar #'row-from-maxima (cdr rows))))))
-    (mlist-of (loop for i from 1 to (length (cdr rows)) unless (member i dependent) collect i))))
-
-(defun $null_vector (rows size)
-  "A list x of n numbers, not all of them zero, with  rows . x = 0; false where there is none."
-  (let* ((echelon (echelon-of (mapcar #'row-from-maxima (cdr rows))))
-         (bound (make-array (+ size 2) :initial-element nil))
-         (values (make-hash-table))
-         (open 1))
-    (dolist (pivot (echelon-pivots echelon)) (setf (aref bound (car pivot)) t))
-    (do () ((not (aref bound open))) (incf open))
-    (if (<= open size)
-        (let ((x nil))
-          (setf (gethash open values) 1)
-          (substituted-back echelon values)
-          (dotimes (i size (cons '(mlist) (nreverse x)))
-            (push (maxima-number (gethash (1+ i) values 0)) x))))))
 
 ;;; ---- Newton's method ---------------------------------------------------------------------
 
@@ -347,7 +268,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   "Values of the columns; column 0 is the negative of the right-hand side."
   (let ((values (make-hash-table)))
     (setf (gethash 0 values) 1)
-    (substituted-back (echelon-of rows) values)))
+    (substituted-back (sparse-echelon rows) values)))
 
 (defun corrections-in-metric (residuals point)
   "The change x that is shortest in the metric A: A x + J^T y = 0, J x = -f."
