@@ -1,11 +1,11 @@
-;;; Values of terms of the expression graph at a point, and ranks of sparse matrices of them
+;;; Values of terms of the expression graph at a point, and points on a manifold
 ;;;
 ;;; Values are rationals, rounded to 80 digits once they are longer. A sum is zero where its terms cancel to a share of
 ;;; 10^-20, a cosine where its argument would have to change by such a share. No number is compared with a fixed size,
 ;;; so that scaling a row or a column changes no rank.
 ;;;
-;;; A point on the manifold f = 0 is found by Newton's method, each correction the shortest (echelon.lisp). What f leaves
-;;; of a zero is 10^-55 then.
+;;; A point on the manifold f = 0 is found by Newton's method, each correction the shortest. What f leaves of a zero is
+;;; 10^-55 then.
 
 (in-package :maxima)
 
