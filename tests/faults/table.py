@@ -591,6 +591,7 @@ WORK = [
         "simulate swing.mac --until 10 --precision 1000 --time-limit 8",
         message_of(None, "--time-limit"),
         prepare=holding("swing.mac", SWING),
+        shell='"$@"',  # a process of its own: heyoka's compiler cannot be interrupted
         long=True,
     ),
     Fault(
