@@ -60,7 +60,7 @@ def draw_study(study: "Study", path: Path, panels: Sequence[View] = PANELS, colu
     path : Path
         SVG file to write.
     panels : sequence of View
-        What is drawn, row by row.
+        Panels, row by row.
     columns : int
         Number of panels in a row.
 
