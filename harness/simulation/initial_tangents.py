@@ -18,7 +18,7 @@ from .initial_state import least_step
 from .matrices import Matrices, MotionMatrices, start_of
 from .variation import Variation, size_of
 
-CONSISTENT = 1e-9  # of the terms of a constraint's time derivative: its residual
+CONSISTENT = 1e-9  # residual of a differentiated constraint: of its terms, if all values move as far as one does
 RESIDUALS = "residual", "residual_rate"
 
 
@@ -68,16 +68,18 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
     """
     t, state = start_of(problem)
     n = len(problem.coordinates)
-    constraints, here = ConstraintVariation(analytic, directions), MotionMatrices(analytic)(t, state)
-    moves = _data(problem, directions)
-    for half in (0, 1):
+    constraints, matrices = ConstraintVariation(analytic, directions), MotionMatrices(analytic)
+    here, moves = matrices(t, state), _data(problem, directions)
+    for half, sizes in enumerate(np.split(matrices.nominal.state, 2)):
         for k, name in enumerate(directions):
             column = moves[half * n :][:n, k]
             for free in _free(problem, half, name):
                 _require_unique(problem, here, free, name)
                 missed = constraints(t, state, moves)[half][:, k]
                 column[free] += _least(here, missed, free, problem.dependent)
-                if _consistent(constraints(t, state, moves)[half][:, k], here, column, missed):
+                largest = sizes * np.max(np.abs(column) / sizes)
+                terms = np.abs(here.jacobian) @ largest + np.abs(missed)
+                if (np.abs(constraints(t, state, moves)[half][:, k]) <= CONSISTENT * terms).all():
                     break
             else:
                 reason = f"the constraints do not let the initial values follow {name}"
@@ -140,9 +142,3 @@ def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bo
         return np.zeros(len(free))
     mass, jacobian = at.mass[np.ix_(free, free)], at.jacobian[np.ix_(touched, free)]
     return least_step(mass[..., None], jacobian[..., None], missed[touched, None], redundant)[:, 0]
-
-
-def _consistent(left: Numbers, at: Matrices, moves: Numbers, missed: Numbers) -> bool:
-    """Return True if the remaining residuals are rounding errors of their terms."""
-    terms = np.abs(at.jacobian) @ np.abs(moves) + np.abs(missed)
-    return bool((np.abs(left) <= CONSISTENT * terms).all())

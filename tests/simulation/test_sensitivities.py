@@ -56,6 +56,14 @@ system : holonomic_system(coordinates = [x], controls = [F], parameters = [m, T]
 scene : holonomic_scene(system, control_law = [F = if t < T then 6*t + 2 else 3*t],
   parameter_values = [m = 1, T = 1], initial_state = [x = 0, dot(x) = 0], time_span = [0, 2])$
 """
+SLING = """
+beam : planar_body(20, 30, [xb, yb], th)$  stone : particle(2, [x, y])$
+system : holonomic_system(parameters = [s],
+  assembly(beam, stone, revolute_joint(marker(beam, [-1, 0]), [0, 1]), distance_joint(stone, marker(beam, [3/2, 0]), s),
+    uniform_gravity(10, beam, stone)))$
+scene : holonomic_scene(system, parameter_values = [s = 2], initial_state = [th = -asin(2/5), dot(th) = 0, x = 3/10,
+  dot(x) = 0], initial_guess = [xb = 9/10, yb = 6/10, y = 1/5], time_span = [0, 1])$
+"""
 THROWN = """
 a : particle(1, [x1, y1])$  b : particle(3, [x2, y2])$
 rod : distance_joint(a, b, 4)$
@@ -254,6 +262,15 @@ def test_no_numbers_are_refused():
     with pytest.raises(HolonomError) as refused:
         holonom.load("examples/linkage.mac").simulate(sensitivities="g")
     assert refused.value.kind is ErrorKind.NO_SENSITIVITY
+
+
+def test_a_start_moves_in_one_joint_alone():
+    """The length of a sling moves the stone, and the beam by nothing but rounding errors."""
+    scene = holonom.system(SLING)
+    found = scene.simulate(until="1/100", samples=2, sensitivities=["s"])
+    below = sqrt(2**2 - (0.3 - 2.5 * sqrt(1 - 0.4**2)) ** 2)
+    for name, expected in {"x": 0, "y": 2 / below, "xb": 0, "yb": 0, "dot(y)": 0}.items():
+        assert found[f"d({name}, s)"][0] == pytest.approx(expected, abs=1e-12)
 
 
 def test_a_start_near_a_guess_that_fits_follows():
