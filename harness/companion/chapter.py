@@ -1,8 +1,8 @@
 """Chapters: the head of a page, and what a module of the page's name computes.
 
-A run in the head is ``name: function argument ...``, with a function of `runs`. An argument is a scene file below
-``examples``, a scene, a number, a setting such as ``c=0``, or ``-`` for the default. Values and figures are expressions
-of Jinja. Figures are SVG documents.
+A run in the head is ``name: command file --option value ...``, as on the command line: a method of `Scene`, ``derive``
+or ``errata``, and a scene file below ``examples``. Values and figures are expressions of Jinja. Figures are SVG
+documents.
 """
 
 from collections.abc import Callable, Mapping
@@ -57,16 +57,18 @@ def _chapter(file: Path) -> Chapter:
     return Chapter(asked, module.get("page", Chapter.page), head.get("values", {}), head.get("figures", {}))
 
 
-def _run(function: str, *words: str) -> Run:
-    return Run(getattr(runs, function), tuple(map(_argument, words)))
+def _run(command: str, *words: str) -> Run:
+    """Return the run of a command."""
+    if command == "errata":
+        return Run(runs.errata)
+    file, given = EXAMPLES / words[0], dict(zip(words[1::2], words[2::2], strict=True))
+    if command == "derive":
+        return Run(runs.derive, (file,))
+    scene, settings = given.pop("--scene", None), given.pop("--set", "").split()
+    options = tuple((name.removeprefix("--"), _number(value)) for name, value in given.items())
+    asked = tuple(tuple(each.split("=")) for each in settings)
+    return Run(runs.answer, (command.replace("-", "_"), file, scene, options, asked))
 
 
-def _argument(word: str) -> Any:
-    """Return an argument of a run."""
-    if word == "-":
-        return None
-    if word.endswith(".mac"):
-        return EXAMPLES / word
-    if "=" in word:
-        return (tuple(word.split("=")),)
-    return int(word) if word.isdigit() else Fraction(word) if word[0].isdigit() else word
+def _number(text: str) -> int | Fraction:
+    return int(text) if text.isdigit() else Fraction(text)

@@ -37,7 +37,7 @@ GRADES = 3
 APART, FIGURE = "apart", "run-figure"  # classes of nodes until a page is read, with its translations
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
-RESULTS = ".kept"  # the folder of results that a later build takes
+RESULTS = ".results"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of results of runs, in the folder of the pages
 
 

@@ -175,6 +175,11 @@ def _css_string(text: str) -> Markup:
     return Markup('"{}"').format(Markup(NOT_OF_A_WORD.sub(lambda found: rf"\{ord(found[0]):x} ", text)))
 
 
+def _with_names_typeset(text: str) -> Markup:
+    """Return the text with names between backquotes as symbols."""
+    return Markup(CODE_IN_TEXT.sub(lambda name: mathematics.symbol(name[1]), str(escape(text))))
+
+
 def _with_code(text: str) -> Markup:
     """Return the text with parts between backquotes as code."""
     return Markup(CODE_IN_TEXT.sub(r"<code>\1</code>", str(escape(text))))

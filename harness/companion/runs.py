@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from fractions import Fraction
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,17 +24,13 @@ from ..temporary import private_directory
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport
     from ..free_motion import FreeMotion
-    from ..program.effects import MeasuredCosts
     from ..record import Record
     from ..series.power_series import MotionSeries
-    from ..simulation.result import Simulation
-    from ..stability.along import LinearizedMotion
-    from ..stability.linearization import Linearization
 
 WORKERS = 2
-Settings = tuple[tuple[str, str], ...]
+Settings = tuple[tuple[str, Any], ...]
 NO_SETTINGS: Settings = ()
-OWN_ORDER = 40  # of the series of a reader's scenes
+OWN_ORDER = (("order", 40),)  # of the series of a reader's scenes
 DEFAULT_LIMITS = Limits()
 
 
@@ -109,153 +104,40 @@ def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAUL
     return Derived(record, check_record(record, source.description(dict(settings))))
 
 
-def free(
-    file: Path, scene: str | None = None, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS
-) -> "FreeMotion":
-    """Return the free motion of a scene.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str or None
-        Name of the scene.
-    settings : Settings
-        Values of parameters.
-    limits : Limits
-        Limits of Maxima's runs.
-
-    Returns
-    -------
-    FreeMotion
-        Free motion.
-    """
-    return Scene(file, scene, dict(settings), limits).free()
-
-
-def series(
+def answer(
+    method: str,
     file: Path,
-    scene: str | None,
-    order: int,
+    scene: str | None = None,
+    options: Settings = NO_SETTINGS,
     settings: Settings = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
-    sensitivities: tuple[str, ...] = (),
-) -> "MotionSeries":
-    """Return the power series of a scene's motion, with its radius of convergence.
+) -> Any:
+    """Return what a method of a scene finds.
 
     Parameters
     ----------
+    method : str
+        Name of a method of `Scene`.
     file : Path
         Scene file.
     scene : str or None
         Name of the scene.
-    order : int
-        Order of the series.
+    options : tuple of pairs
+        Keyword arguments of the method, by name.
     settings : Settings
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
-    sensitivities : tuple of str
-        Parameters and initial values that the series is also differentiated by.
 
     Returns
     -------
-    MotionSeries
-        Power series.
+    Any
+        Value of the method. Of a power series the radius of convergence is estimated, too.
     """
-    motion = Scene(file, scene, dict(settings), limits).series(order=order, sensitivities=sensitivities)
-    motion.radius  # noqa: B018
-    return motion
-
-
-def simulation(
-    file: Path,
-    scene: str | None,
-    until: Fraction | None = None,
-    samples: int | None = None,
-    settings: Settings = NO_SETTINGS,
-) -> "Simulation":
-    """Return a scene's motion through its time span or to a time.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str or None
-        Name of the scene.
-    until : Fraction or None
-        Last time, or None for that of the scene.
-    samples : int or None
-        Number of samples.
-    settings : Settings
-        Values of parameters.
-
-    Returns
-    -------
-    Simulation
-        Simulated motion.
-    """
-    return Scene(file, scene, dict(settings), DEFAULT_LIMITS).simulate(until=until, samples=samples)
-
-
-def linearized(file: Path, scene: str, at: int) -> "Linearization":
-    """Return the linear system about a motion at a time.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str
-        Name of the scene.
-    at : int
-        Time.
-
-    Returns
-    -------
-    Linearization
-        Linear system as `holonom linearize` finds it.
-    """
-    return Scene(file, scene, {}, DEFAULT_LIMITS).linearize(at=at)
-
-
-def linearized_along(file: Path, scene: str, until: int, samples: int) -> "LinearizedMotion":
-    """Return the linear system along a motion.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str
-        Name of the scene.
-    until : int
-        Last time.
-    samples : int
-        Number of times.
-
-    Returns
-    -------
-    LinearizedMotion
-        Linear system as `holonom linearize-along` finds it.
-    """
-    return Scene(file, scene, {}, DEFAULT_LIMITS).linearize_along(until=until, samples=samples)
-
-
-def effects(file: Path, scene: str) -> "MeasuredCosts":
-    """Return the costs of the effects of a scene.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str
-        Name of the scene.
-
-    Returns
-    -------
-    MeasuredCosts
-        Costs as `holonom effects` reports them.
-    """
-    return Scene(file, scene, {}, DEFAULT_LIMITS).effects()
+    found = getattr(Scene(file, scene, dict(settings), limits), method)(**dict(options))
+    if method == "series":
+        found.radius  # noqa: B018
+    return found
 
 
 def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
@@ -278,8 +160,8 @@ def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
     names = names_of_scenes(file, settings, limits)
     return FileAnswers(
         derive(file, settings, limits),
-        {name: or_failure(free, file, name, settings, limits) for name in names},
-        {name: or_failure(series, file, name, OWN_ORDER, settings, limits) for name in names},
+        {name: or_failure(answer, "free", file, name, NO_SETTINGS, settings, limits) for name in names},
+        {name: or_failure(answer, "series", file, name, OWN_ORDER, settings, limits) for name in names},
     )
 
 

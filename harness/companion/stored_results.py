@@ -69,7 +69,8 @@ def digest_of_all() -> str:
 def _key(run: Run) -> str:
     paths = [each for each in run.arguments if isinstance(each, Path)]
     own = _digest([*(paths or _below(shared("examples"))), Path(inspect.getfile(run.compute))])
-    parts = (_program(), own, run.compute.__module__, run.compute.__qualname__, run.arguments)
+    asked = [each.name if isinstance(each, Path) else each for each in run.arguments]
+    parts = (_program(), own, run.compute.__module__, run.compute.__qualname__, asked)
     return hashlib.sha256(repr(parts).encode()).hexdigest()
 
 

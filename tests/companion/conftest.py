@@ -30,7 +30,7 @@ def made_companion(results, tmp_path_factory):
     """Sphinx's application that made the companion, and what its chapters made the pages of, by the pages' names."""
     folder = tmp_path_factory.mktemp("made")
     directory, sources = folder / "companion", copied(folder)
-    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, folder / "kept", dict(results))
+    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, folder / "results", dict(results))
     return build(sources, directory, shelf, {}), shelf.known
 
 

@@ -15,7 +15,7 @@ from ...number_texts import number, numbers
 from ...record import Equation, Scene
 from ...series.power_series import MotionSeries, NumberTexts
 from ..cards import named_equations, scene_named
-from ..runs import DEFAULT_LIMITS, NO_SETTINGS, Run, series
+from ..runs import Run, answer
 from . import INITIAL_SCENE, PAPER
 
 BOB_SCENE = "drawn_in_scene"
@@ -23,7 +23,8 @@ LOW_ORDER, HIGH_ORDER = 3, 40
 TIME, LAST = Fraction(1, 10), Fraction(1, 2)
 SHOWN = "q1"  # the coordinate that is drawn
 
-RUNS = {"varied": Run(series, (PAPER, INITIAL_SCENE, LOW_ORDER, NO_SETTINGS, DEFAULT_LIMITS, ("u0",)))}
+OPTIONS = (("order", LOW_ORDER), ("sensitivities", ("u0",)))
+RUNS = {"varied": Run(answer, ("series", PAPER, INITIAL_SCENE, OPTIONS))}
 
 
 def page(results: Mapping[str, Any]) -> dict[str, Any]:
