@@ -65,7 +65,7 @@ class DescribedScene:
     prescribed_reactions : mapping of str to Expr
         Multipliers as functions of the time, by name.
     servo_trees : tuple of trees
-        Servo-constraints: expressions that the controls without a law keep at zero.
+        Servo-constraints: expressions that the controls without a law make zero.
     parameter_values : mapping of str to Expr
         The parameters that have values. Settings are among them.
     initial_state, initial_guess : mapping of str to Expr
@@ -107,7 +107,7 @@ class DescribedScene:
 
     @cached_property
     def servo_constraints(self) -> "tuple[Expr, ...]":
-        """Expressions that the controls without a law keep at zero."""
+        """Expressions that the controls without a law make zero."""
         return each(expression, self.servo_trees)
 
 

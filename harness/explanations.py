@@ -42,7 +42,7 @@ ADVICE = {
         "digits of the phase for every tenfold time, or take quadruple precision."
     ),
     Difficulty.FREE_CANCELLATION: translatable(
-        "At the times that were kept the constraints exert no force: every multiplier is a difference that cancels, "
+        "At the recorded times the constraints exert no force: every multiplier is a difference that cancels, "
         "so read values below 1e-13 of the forces as zero, and use `holonom free` to decide whether the motion is free."
     ),
     Difficulty.VANISHING_LENGTH: translatable(

@@ -198,13 +198,17 @@ class ErrorKind(Enum):
         "{detail}",
         "write for example {--grid} m=50:500:1000, {--list} m=1,2,5 or {--sample} 'm=normal(100,5)' {--size} 1000",
     )
-    NOT_KEPT = ("{detail}", "keep for example final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
+    NOT_AN_OUTPUT = ("{detail}", "keep for example final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
     NOT_PLOTTED = "this cannot be drawn: {detail}"
     OTHER_SWEEP = ("the folder contains another sweep: {detail}", "choose another folder")
     UNRELATED_FOLDER = ("the folder contains other files than a sweep", "choose a new folder")
     FOLDER_TAKEN = ("another command is using this folder", "wait until it ends")
     NOTHING_TO_RESUME = ("no sweep to resume", "remove {--resume} to start one")
-    WORKERS_LOST = (MACHINE, "the workers are gone: {detail}", "run the same command again; finished rows are kept")
+    WORKERS_LOST = (
+        MACHINE,
+        "the workers are gone: {detail}",
+        "run the same command again; finished rows are not computed again",
+    )
     NOT_A_SCHEDULER = (
         "invalid address of a Dask scheduler: {detail}",
         "write for example {--dask} tcp://127.0.0.1:8786",
@@ -255,7 +259,7 @@ class ErrorKind(Enum):
         "remove {--precision}",
         "make the constraints independent",
     )
-    TOLERANCE_UNHELD = (
+    TOLERANCE_OUT_OF_RANGE = (
         "{detail}",
         "use another tolerance",
         "use the Taylor engine for more digits with {--precision}",
@@ -311,7 +315,7 @@ class ErrorKind(Enum):
     NO_WAY_ON = ("the motion cannot be continued beyond t = {detail}", "end it earlier")
 
 
-ALIASES = {"failure": "kind", "said": "reason", "sentence": "message"}  # names in version 0.1, kept until 1.1
+ALIASES = {"failure": "kind", "said": "reason", "sentence": "message"}  # names in version 0.1, until 1.1
 
 
 class HolonomWarning(UserWarning):

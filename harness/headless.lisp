@@ -172,7 +172,7 @@ before all, outcome, mark)."
   (let ((met (and (boundp '*asked-for*)
                   (symbol-value '*asked-for*)
                   (mfuncall (funcall 'read-name '$refusal_met)))))
-    (if met (funcall 'letters-of-name (second met)) "")))
+    (if met (funcall 'characters-of-name (second met)) "")))
 
 ;;; Text for people: one line, names without the backslashes that Maxima's own reader wants
 

@@ -40,7 +40,7 @@ def visible(text: str) -> str:
     Returns
     -------
     str
-        Line feeds and tabs are kept.
+        Line feeds and tabs are unchanged.
     """
     return UNSEEN.sub(_code, text)
 

@@ -2,7 +2,7 @@
 
 This is the only module that handles Maxima as a process. A run has a private directory. `headless.lisp`, loaded
 first, turns questions into errors and writes the ending to a file, because Maxima's exit status is not reliable. The
-output of Maxima is kept for people and not read, with one exception: the count of Maxima's own test runner.
+output of Maxima is recorded for people and not parsed, with one exception: the count of Maxima's own test runner.
 
 A scene file is a program, perhaps an untrusted one. One process runs it and writes its description. Other processes,
 which start after the first has ended and never see the file, derive from that description.

@@ -503,7 +503,7 @@ class Scene:
         Raises
         ------
         HolonomError
-            If a control has no law or a parameter no value, if a sign changes or is held there, if the motion has
+            If a control has no law or a parameter no value, if a sign changes or slides there, if the motion has
             releases or forces with multipliers, if it cannot be continued so far, or if the constraints lose rank
             there.
 

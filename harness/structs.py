@@ -36,7 +36,7 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
     kind : type
         The type. Of its fields those of dataclasses, named tuples, ``tuple[...]`` and ``Mapping[str, ...]`` are read in
         the same way. A class that has ``of_document`` reads itself. Other classes are called, as enumerations are.
-        Fields that the object does not have keep their defaults.
+        Fields that the object does not have get their defaults.
     content : mapping of str to object
         The object.
     **given : object
@@ -80,7 +80,7 @@ def reader_of(kind: Any) -> Callable[[Any], Any] | None:
     Returns
     -------
     callable or None
-        None if the part is kept unchanged.
+        None if the part is unchanged.
     """
     origin, inside = get_origin(kind), get_args(kind)
     if origin is UnionType:

@@ -4,7 +4,7 @@
 ;;; own names, gradient, is exchanged for a private symbol, gradient', which is displayed and
 ;;; exported without the prime.
 ;;;
-;;; Kept as they are: Maxima's own functions and variables; names that the library neither binds nor calls; the fields
+;;; Unchanged: Maxima's own functions and variables; names that the library neither binds nor calls; the fields
 ;;; of structures; and the public names: those of public_names(...), the options (names given to define_variable), the
 ;;; entries of descriptions (named where read_entries is called), the writers of documents (write_...).
 ;;;
@@ -81,10 +81,10 @@
   "The name of a private symbol; any other name as it is."
   (or (get name 'plain-name) name))
 
-(defun letters-of-name (name)
+(defun characters-of-name (name)
   "As the user writes it: Maxima reads  lambda  and  go  as symbols of its own, without the sign before names."
-  (let ((letters (print-invert-case (plain-name (or (get name 'reversealias) name)))))
-    (if (member (char letters 0) '(#\$ #\%)) (subseq letters 1) letters)))
+  (let ((characters (print-invert-case (plain-name (or (get name 'reversealias) name)))))
+    (if (member (char characters 0) '(#\$ #\%)) (subseq characters 1) characters)))
 
 (defun read-name (name)
   "What a name is read as: decided once, where it is met first."
@@ -277,15 +277,15 @@
 (defun define-step (call)
   "The plain name of a step:  name([given]) := called_step(internal, [a, b], [c], given)."
   (let* ((given (read-name '$given))
-         (letters (mapcar #'in-namespace (cdr call)))
-         (optional (find-if #'$listp letters)))
+         (parameters (mapcar #'in-namespace (cdr call)))
+         (optional (find-if #'$listp parameters)))
     (meval (with-maximas-defaults
              `((mdefine) ((,(caar call)) ((mlist) ,given))
                ((,(read-name '$called_step)) ((mquote) ,(read-function-name (caar call)))
-                ((mquote) ((mlist) ,@(remove optional letters))) ((mquote) ,(or optional '((mlist)))) ,given))))))
+                ((mquote) ((mlist) ,@(remove optional parameters))) ((mquote) ,(or optional '((mlist)))) ,given))))))
 
 (defun $internal_names ()
-  "The names that the library keeps to itself, and that are none of Maxima's."
+  "The names private to the library, and that are none of Maxima's."
   (let ((names nil))
     (maphash #'(lambda (name read)
                  (unless (or (eq name read) (maximas-function-p name)) (push name names)))

@@ -43,7 +43,7 @@ IN_MAXIMA = re.compile(
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
 SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
-KEPT = {
+EXPECTED = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
     "marks": re.compile(r"<[^>]+>"),
     "formulas": re.compile(r"\$[^$]+\$"),
@@ -113,14 +113,14 @@ def _faults(message: Message) -> Iterator[str]:
         return
     if message.fuzzy:
         yield "fuzzy"
-    for what, pattern in KEPT.items():
-        wanted = _kept(pattern, _english(message))
+    for what, pattern in EXPECTED.items():
+        wanted = _unchanged(pattern, _english(message))
         for text in texts:
-            if (found := _kept(pattern, text)) != wanted:
+            if (found := _unchanged(pattern, text)) != wanted:
                 yield f"{what} differ, {', '.join(sorted(found ^ wanted))}"
 
 
-def _kept(pattern: re.Pattern, text: str) -> set[str]:
+def _unchanged(pattern: re.Pattern, text: str) -> set[str]:
     """What a text has of a kind, without the words that it defines and the names of chapters."""
     return {found for found in pattern.findall(text) if not found.startswith(("{dfn}", "{numref}"))}
 

@@ -42,10 +42,10 @@ def switched(tmp_path_factory) -> Description:
 
 def described_anew(description: Description, folder: Path) -> Description:
     """What a Maxima describes that saw the description alone."""
-    return read_description(ask(Document.DESCRIPTION, kept(description, folder)), description.file)
+    return read_description(ask(Document.DESCRIPTION, written(description, folder)), description.file)
 
 
-def kept(description: Description, folder: Path) -> Path:
+def written(description: Description, folder: Path) -> Path:
     file = folder / "description.json"
     file.write_text(json.dumps(description.content, indent=1), encoding="utf-8")
     return file
@@ -125,7 +125,7 @@ def without_times(content: dict) -> dict:
 
 def test_settings_are_put_into_a_description(tmp_path):
     file = EXAMPLES / "pendulum.mac"
-    set_later = describe(kept(describe(file), tmp_path), {"m": "3/4"})
+    set_later = describe(written(describe(file), tmp_path), {"m": "3/4"})
     set_first = describe(file, {"m": "3/4"})
     assert set_later.content == set_first.content
     assert set_later.scenes[0].parameter_values.trees["m"] == ["Rational", 3, 4]
@@ -133,7 +133,7 @@ def test_settings_are_put_into_a_description(tmp_path):
 
 def test_a_description_is_set_nothing_that_is_no_parameter(tmp_path):
     with pytest.raises(HolonomError) as raised:
-        describe(kept(describe(EXAMPLES / "chain.mac"), tmp_path), {"N": "4"})
+        describe(written(describe(EXAMPLES / "chain.mac"), tmp_path), {"N": "4"})
     assert raised.value.kind is ErrorKind.NOT_SETTABLE
 
 
@@ -166,7 +166,7 @@ def test_what_maxima_cannot_make_of_a_description_is_refused(tree, switched, tmp
     content = json.loads(switched.text)
     content["scenes"][0]["control_law"]["w"] = tree
     with pytest.raises(HolonomError):
-        ask(Document.RECORD, kept(replace(switched, content=content), tmp_path))
+        ask(Document.RECORD, written(replace(switched, content=content), tmp_path))
 
 
 def test_only_what_is_used_is_set(write_scene):

@@ -123,7 +123,7 @@ def test_one_run_writes_the_documents_of_several():
     assert together == alone
 
 
-def test_documents_written_before_a_limit_are_kept():
+def test_documents_written_before_a_limit_are_valid():
     description = Source(EXAMPLES / "bead.mac").description()
     endless = "lambda([file], do print(file))"
     writers = ["write_record", endless, "write_record"]

@@ -50,7 +50,7 @@ def test_a_place_that_cannot_be_written_is_refused(place, tmp_path):
     assert raised.value.kind is ErrorKind.UNWRITABLE
 
 
-def test_a_link_is_followed_and_a_device_kept(tmp_path):
+def test_a_link_is_followed_and_a_device_stays(tmp_path):
     link = tmp_path / "link"
     link.symlink_to(tmp_path / "target")
     write_whole(link, "text")

@@ -134,10 +134,10 @@ def test_while_one_process_makes_an_image_others_run_without(made, tmp_path):
 def test_oldest_images_are_removed_when_there_are_too_many(tmp_path, monkeypatch):
     monkeypatch.setattr(preloaded, "MOST_IMAGES", 3)
     for i in range(5):
-        saved, kept = tmp_path / "saved", tmp_path / f"{i}.image"
+        saved, cached = tmp_path / "saved", tmp_path / f"{i}.image"
         saved.write_text("an image")
-        preloaded._put(saved, kept)
-        os.utime(kept, (i, i))
+        preloaded._put(saved, cached)
+        os.utime(cached, (i, i))
     assert sorted(each.name for each in tmp_path.glob("*.image")) == ["2.image", "3.image", "4.image"]
 
 

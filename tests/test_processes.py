@@ -10,7 +10,7 @@ from holonom.processes import count_threads, descendants, memory_in_use
 
 STARTS_A_HOG = (
     "import subprocess, sys; subprocess.run([sys.executable, '-c', "
-    "'held = bytearray(10**8); print(flush=True); import time; time.sleep(60)'])"
+    "'memory = bytearray(10**8); print(flush=True); import time; time.sleep(60)'])"
 )
 
 

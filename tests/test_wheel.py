@@ -60,11 +60,11 @@ def commands(wheel, tmp_path_factory):
 def test_the_wheel_holds_every_file_of_the_package_and_its_data(wheel):
     from zipfile import ZipFile
 
-    held = set(ZipFile(wheel).namelist())
+    contained = set(ZipFile(wheel).namelist())
     listed = run("git", "ls-files", "harness", "maxima", "examples", cwd=ROOT, check=True).stdout.splitlines()
     present = [name for name in listed if (ROOT / name).is_file()]
     places = {"harness": "holonom", "maxima": "holonom/share/maxima", "examples": "holonom/share/examples"}
-    missing = [name for name in present if f"{places[name.split('/')[0]]}/{name.split('/', 1)[1]}" not in held]
+    missing = [name for name in present if f"{places[name.split('/')[0]]}/{name.split('/', 1)[1]}" not in contained]
     assert missing == []
 
 

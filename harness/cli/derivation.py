@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..record import Record
     from ..source import Source
 
-TIME_TO_TELL = 1.0  # seconds that are kept for the verdicts found within a time limit
+TIME_TO_TELL = 1.0  # seconds reserved for the verdicts found within a time limit
 
 
 @holonom.command(examples=["describe examples/pendulum.mac", "describe examples/pendulum.mac --json pendulum.json"])

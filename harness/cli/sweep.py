@@ -20,7 +20,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
 @holonom.command(
     examples=[
         "sweep examples/crane.mac --grid m=50:500:300 -o runs",
-        'sweep examples/crane.mac --list m=100,200 --keep "max(abs(lambda1))" -o kept',
+        'sweep examples/crane.mac --list m=100,200 --keep "max(abs(lambda1))" -o forces',
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))
@@ -86,13 +86,13 @@ def sweep(
     from ..sweeps.outputs import read_quantities
     from ..sweeps.run import run_sweep
 
-    axes, kept = read_axes(grids, lists, samples, size, seed), read_quantities(keep)
+    axes, quantities = read_axes(grids, lists, samples, size, seed), read_quantities(keep)
     if plot_file is not None:
         from ..figures.sweep import require_plottable
 
         require_formats(None, plot_file)
         require_plottable(axes)
-    wanted = SweepRequest(axes, kept, called=as_given(scene_file), **options)
+    wanted = SweepRequest(axes, quantities, called=as_given(scene_file), **options)
     with sweep_progress(axes.rows) as progress:
         found = run_sweep(scene_file, request, wanted, output, limits, progress)
     for name in found.mended:

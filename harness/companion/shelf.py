@@ -24,7 +24,7 @@ class Shelf:
     files : Path
         Where the figures and other files of the pages are put.
     result_folder : Path or None
-        Where results of runs are kept from one build to the next.
+        Where results of runs are stored for later builds.
     results : dict, optional
         Those that are there already. Others are added.
     done : callable, optional

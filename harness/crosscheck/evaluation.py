@@ -37,7 +37,7 @@ LIMITS = {
 }
 
 REMEMBERED = 2**12
-"""Values of such functions that are kept: several expressions contain them at the same point."""
+"""Number of cached values: several expressions contain the same function at the same point."""
 
 FAILURES = (ZeroDivisionError, OverflowError, ValueError, TypeError, mp.NoConvergence)
 

@@ -18,7 +18,7 @@ from .irregular_point import IrregularPoint
 from .tape import Tape
 from .taylor import Polynomial, Taylor
 
-DATA_DIGITS = 250  # in which numbers of a description are kept, more than any comparison has
+DATA_DIGITS = 250  # of numbers of a description, more than any comparison has
 
 
 class Spline:

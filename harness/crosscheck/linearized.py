@@ -57,15 +57,15 @@ class DescribedEquations:
         self.controls = tuple(u for u in system.controls if u.name in scene.control_law)
         self.found = tuple(u for u in system.controls if u not in (*self.controls, *self.coordinates))
         self.multipliers, self._system, self._names = system.multipliers, system, {}
-        kept = [*system.constraints, *map(exact, scene.servo_constraints)]
-        rates = [system.time_derivative(f) for f in kept]
+        constraints = [*system.constraints, *map(exact, scene.servo_constraints)]
+        rates = [system.time_derivative(f) for f in constraints]
         self.outputs = tuple(scene.outputs)
         momenta = gradient(system.kinetic_energy, system.velocities)
         L = system.kinetic_energy - system.potential_energy
         energy = sp.Add(*(v * p for v, p in zip(system.velocities, gradient(L, system.velocities), strict=True))) - L
         self._rows = {
             "equation": IndependentEquations(system).motion,
-            "constraint": kept,
+            "constraint": constraints,
             "rate": rates,
             "acceleration": [system.time_derivative(f) for f in rates],
             "output": [exact(scene.outputs[each]).subs(ENERGY, energy) for each in self.outputs],
@@ -247,7 +247,9 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     both = [(moving.T @ mass + N.T @ mass_rate), N.T @ mass]
     for name, first, second, given in (("xi", Q, V, rates[:m]), ("eta", V, accelerations, rates[m:])):
         size = _product_sizes(both[0], first) + _product_sizes(both[1], second)
-        yield Condition(f"rates of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given))
+        yield Condition(
+            f"derivatives of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given)
+        )
     own, size = _deviation(here, "output", known | {"a": accelerations})
     given = rows[2 * n + len(solved) :]
     yield Condition("outputs of the scene in C and D", own - given, size + np.abs(given))

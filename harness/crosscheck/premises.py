@@ -26,7 +26,7 @@ from .system import exact
 from .taylor import Taylor
 
 TIMES = 4
-"""Times after the first at which a law that is held around it is that which is stated."""
+"""Number of times after the first at which a law, fixed around it, is compared with the stated one."""
 
 SHORTEST = mp.mpf(2) ** -27
 """Time between two of them."""

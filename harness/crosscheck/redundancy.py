@@ -84,7 +84,7 @@ def verify_redundancy(
         detail = "where the independent constraints hold, the others do not"
         return CheckResult(Verdict.DISAGREES, DIGITS, manifold.only_independent_hold, detail)
     if not found:
-        return CheckResult(Verdict.UNDECIDED, None, None, "no configuration was found that keeps all constraints")
+        return CheckResult(Verdict.UNDECIDED, None, None, "no configuration was found that satisfies all constraints")
     largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
     detail = _contradiction(largest, len(independent), len(described.coordinates), regular)
     return CheckResult(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)

@@ -206,7 +206,8 @@ def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
         if switching.outcome == "joint released":
             yield f"At t = {switching.t:.10g}, where {switching.function} crosses zero, a joint is released."
             continue
-        yield f"At t = {switching.t:.10g} the surface {switching.function} = 0 is {_passed(switching.outcome)}."
+        what = _passed(switching.outcome)
+        yield f"At t = {switching.t:.10g} the switching surface {switching.function} = 0 is {what}."
     if len(switchings) > LISTED:
         yield f"The motion switches {len(switchings)} times in all, the last time at t = {switchings[-1].t:.10g}."
 

@@ -203,7 +203,7 @@ def write_figure(figure: "Figure", path: Path) -> None:
     figure : Figure
         The figure to write.
     path : Path
-        The file. What it held is replaced. The same figure gives the same bytes.
+        The file. Its content is replaced. The same figure gives the same bytes.
 
     Raises
     ------

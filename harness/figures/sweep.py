@@ -43,7 +43,7 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
     names = [axis["name"] for axis in sweep.document["parameters"]]
     shown = quantity or plotted(sweep.document)
     if shown not in sweep.document["columns"] or shown in ("status", "note"):
-        raise HolonomError(ErrorKind.NOT_PLOTTED, detail=f"the sweep keeps no {shown}")
+        raise HolonomError(ErrorKind.NOT_PLOTTED, detail=f"the sweep does not record {shown}")
     table = sweep.dataset.to_table(columns=[*names, shown])
     columns = [np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=float) for name in [*names, shown]]
     with figure_style():

@@ -219,7 +219,7 @@ def in_pieces(
 ) -> SourceParts:
     """Return a program as statements of C, or as calls of parts if it is long.
 
-    Values that a later part needs are kept in an array ``w``.
+    Values that a later part needs are stored in an array ``w``.
 
     Parameters
     ----------

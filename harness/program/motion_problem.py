@@ -106,8 +106,8 @@ class MotionProblem:
     obstruction: str | None  # why no order of pivots solves the equations of motion; None where one does
     # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
     motion: Program | None
-    # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that keeps
-    # the constraints, up to second order in the residuals; None with an obstruction
+    # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that meets
+    # constraints, up to second order in the residuals; None with an obstruction
     projection: Program | None
     # ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``, ``residual[beta]``,
     # ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c
@@ -125,7 +125,7 @@ class MotionProblem:
     # ``servo_matrix[j,i]``: coefficient of the i-th control that servo-constraints find, in the second time derivative
     # of condition j
     servo_matrix: Program | None = None
-    # how many of the constraints, the last ones, servo-constraints keep, so that their multipliers are zero
+    # number of servo-constraints, the last of the constraints, whose multipliers are zero
     servo: int = 0
     reacting: tuple[str, ...] = ()  # multipliers that forces contain
     # of each output that servo-constraints prescribe: which of its time derivatives the controls are in
@@ -435,7 +435,7 @@ def computing(program: Program, wanted: Collection[str]) -> Program:
     ----------
     program : Program
     wanted : collection of str
-        Names of outputs to keep.
+        Names of the selected outputs.
 
     Returns
     -------

@@ -7,7 +7,7 @@ One JSON document from Maxima:
     assignments   [name, expression], each of the inputs and the names before it
     outputs       name -> a name or a number
 
-An expression is a MathJSON tree. It is kept as written, unlike in `holonom.mathjson`, where SymPy sorts and collects
+An expression is a MathJSON tree. It stays as written, unlike in `holonom.mathjson`, where SymPy sorts and collects
 terms: its operations are what the program costs, and their order decides the last bits of the numbers.
 """
 

@@ -24,7 +24,7 @@ class Precision:
 
     name: str  # ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``
     digits: int  # decimal digits that a number is written with
-    sure_digits: int  # decimal digits that a rounded number keeps
+    sure_digits: int  # correct decimal digits of a rounded number
     highest_order: int  # of an expansion: its tolerance, exp(-2*order), is one of the numbers
     number: Callable[[str], Any]  # from decimal digits to a number
     text: Callable[[Any], str]  # from a number to decimal digits

@@ -93,4 +93,4 @@ class Index(StrEnum):
 class DaeRequest:
     """A request for a form of the system."""
 
-    index: Index = option(Index.GGL, "Differentiation index. ggl: index 2, with the constraints kept, too.")
+    index: Index = option(Index.GGL, "Differentiation index. ggl: index 2, with the constraints satisfied, too.")

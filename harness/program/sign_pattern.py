@@ -1,8 +1,8 @@
 """Programs of a motion with known signs, each a number or a sliding value.
 
 A motion that is not analytic everywhere has signs as inputs of its programs (`maxima/program/switching.mac`). While
-they stay the same, the motion is analytic, and its problem has the signs put in. The sign that keeps a motion sliding
-on its surface is the value -drive(0)/grip along the motion.
+they stay the same, the motion is analytic, and its problem has the signs put in. The sign that makes a motion slide
+on its switching surface is the value -drive(0)/grip along the motion.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Mapping
@@ -15,7 +15,7 @@ from .folding import ZERO, folded
 from .motion_problem import DependsOn, MotionProblem, computing
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
 
-SLIDING = "sliding"  # stands in a pattern for the sign that keeps the motion on its surface
+SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
 Pattern = Mapping[str, int | str]
 
 
@@ -27,7 +27,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     problem : MotionProblem
         The motion, with or without signs.
     pattern : mapping of str to int or str
-        1, -1 or `SLIDING` for each sign. One at most is held, of those that `holdable` names.
+        1, -1 or `SLIDING` for each sign. At most one slides, among those of `holdable`.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def drawing_with_values(problem: MotionProblem) -> Drawing:
 
 
 def holdable(problem: MotionProblem, name: str) -> bool:
-    """Return True if a motion can slide on a sign's surface.
+    """Return True if a motion can slide on a sign's switching surface.
 
     Then only forces contain the sign, and they are linear in it.
 
@@ -130,7 +130,7 @@ def holdable(problem: MotionProblem, name: str) -> bool:
 
 
 def driven(problem: MotionProblem, name: str) -> bool:
-    """Return True if the accelerations on both sides of a sign's surface are known.
+    """Return True if the accelerations on both sides of a sign change are known.
 
     Parameters
     ----------
@@ -169,8 +169,8 @@ def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Prog
     """Return functions that have a known sign if accelerations are unique.
 
     The determinant D of `maxima/program/reacting_forces.mac` is positive for each pattern of the signs of multipliers,
-    with the largest friction to both sides if the motion slides on a surface. Then the drive falls with the sliding
-    sign. With one multiplier it does so between two values that the surfaces determine.
+    with the largest friction to both sides if the motion slides on a switching surface. Then the drive falls
+    with the sliding sign. With one multiplier it does so between two values that the switching surfaces determine.
 
     Parameters
     ----------
@@ -347,7 +347,7 @@ def _text(problem: MotionProblem) -> Hashable:
 
 
 def switching_function(problem: MotionProblem, quantity: str, name: str, pattern: Pattern) -> Program:
-    """Return one function that decides how the motion passes a surface.
+    """Return one function that decides how the motion passes a switching surface.
 
     Parameters
     ----------

@@ -91,15 +91,15 @@ class MotionSeries(Shown):
         Parameters
         ----------
         order : int
-            Highest power that is kept, at most that of the series.
+            Highest power of the result, at most that of the series.
 
         Returns
         -------
         MotionSeries
         """
         groups = ("coordinates", "multipliers", "constraint_forces", "sensitivities")
-        kept = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
-        return replace(self, order=order, **kept)
+        truncated = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
+        return replace(self, order=order, **truncated)
 
     def all_series(self) -> Iterator[tuple[str, NumberTexts]]:
         """Yield name and coefficients of each series.

@@ -318,10 +318,10 @@ def _slopes(
 
     slopes = np.empty(len(logarithms))
     there = np.isfinite(logarithms)  # where not, three coefficients in a row are zero
-    for kept in np.unique(there, axis=0):
-        here = (there == kept).all(axis=1)
-        weights = np.linalg.pinv(np.column_stack([*columns(n[kept]), np.ones(kept.sum())]))[0]
-        slopes[here] = reduce(np.add, weights[:, None] * logarithms[np.ix_(here, kept)].T, 0.0)
+    for chosen in np.unique(there, axis=0):
+        here = (there == chosen).all(axis=1)
+        weights = np.linalg.pinv(np.column_stack([*columns(n[chosen]), np.ones(chosen.sum())]))[0]
+        slopes[here] = reduce(np.add, weights[:, None] * logarithms[np.ix_(here, chosen)].T, 0.0)
     return slopes
 
 

@@ -211,11 +211,11 @@ def _zeros_of(function: Callable[[np.ndarray], np.ndarray], bound: float) -> lis
 
 
 def _each_once(zeros: np.ndarray) -> list[complex]:
-    kept: list[complex] = []
+    distinct: list[complex] = []
     for zero in sorted(map(complex, zeros), key=abs):
-        if all(abs(zero - other) > CLOSE * abs(zero) for other in kept):
-            kept.append(zero)
-    return kept
+        if all(abs(zero - other) > CLOSE * abs(zero) for other in distinct):
+            distinct.append(zero)
+    return distinct
 
 
 # ---- numbers ----

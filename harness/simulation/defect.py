@@ -6,7 +6,7 @@ not even change the energy. If the equations of motion contain such functions of
 step is compared with them: in each part of it the velocities must change by the integral of the accelerations.
 
 If such a function acts for longer than 1/4096 of the time span, and changes the velocities by more than the tolerance
-lets expect, a miss is reported.
+lets expect, it is reported.
 """
 
 from math import ceil

@@ -61,12 +61,12 @@ def evaluation_once(problem: MotionProblem, program: Program, precision: Precisi
     """Compile a program of a problem, once for all values of its open parameters.
 
     Without open parameters, NumPy evaluates a program in double precision until compilation is worthwhile. A function
-    that is kept for later motions is compiled at once: else their last bits would depend on the motions before.
+    that is cached for later motions is compiled at once. Otherwise their last bits would depend on the motions before.
 
     Parameters
     ----------
     problem : MotionProblem
-        The motion, which keeps the compiled function.
+        The motion, which stores the compiled function.
     program : Program
         One of its programs.
     precision : Precision
@@ -114,7 +114,7 @@ def batch_evaluation(problem: MotionProblem, program: Program) -> Evaluation:
     Parameters
     ----------
     problem : MotionProblem
-        The motion, which keeps the compiled function.
+        The motion, which stores the compiled function.
     program : Program
         One of its programs.
 
@@ -201,7 +201,7 @@ def as_floats(numbers: Numbers) -> NDArray[np.float64]:
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
-    """Keep BLAS to one thread inside the block.
+    """Limit BLAS to one thread inside the block.
 
     Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
     as without, as measured.

@@ -29,7 +29,7 @@ STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, relative to the largest, that differences do not distinguish from zero
 DIFFERENCE = 1e-5  # of nominal coordinates and velocities: the cube root of a double's rounding error
 DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such a decay may take longer steps
-AT_ONCE = 32  # states whose matrices are held together
+AT_ONCE = 32  # states whose matrices are in memory at a time
 
 
 class Difficulty(StrEnum):

@@ -3,7 +3,7 @@
 While the signs in its equations stay the same, a motion is analytic. An engine integrates it with these signs. If a
 switching function changes its sign, the step is cut, and the equations on both sides decide the continuation:
 
-- if both sides lead across the surface, it is crossed.
+- if both sides lead across the switching surface, it is crossed.
 - if both lead back to it, the motion slides on it, as dry friction sticks, until one of them does not
   (Filippov, Differential Equations with Discontinuous Righthand Sides, section 4).
 - if a joint is released, its constraints end: the state stays the same, and the accelerations jump,
@@ -12,7 +12,7 @@ switching function changes its sign, the step is cut, and the equations on both 
   Treatise on Analytical Dynamics, chapter 14).
 
 Undetermined continuations are rejected: a control law that jumps in a constraint, an energy that jumps as a function of
-the state, an impulse of a surface without a law of impact.
+the state, an impulse of a switching surface without a law of impact.
 """
 
 from bisect import bisect_right
@@ -313,7 +313,7 @@ class HybridMotion:
     def _switch(self, pattern: Pattern, names: list[str], t: Any, state: Numbers, left: tuple[str, ...]) -> None:
         """Continue in another mode with some signs changed.
 
-        `left` are the surfaces that the motion leaves.
+        `left` are the switching surfaces that the motion leaves.
         """
         if self._signs[names[0]].by is not DependsOn.REACTION:
             pattern = self._with_reactions(pattern, t, state)
@@ -346,16 +346,16 @@ class HybridMotion:
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """Return the sign of a motion on a surface, decided by the motions on both sides."""
+        """Return the sign on a switching surface, decided by the motions on both sides."""
         sides = (self._with_reactions({**pattern, sign.name: to}, t, state) for to in (1, -1))
         above, below = (self._output("drive", sign, side, t, state) for side in sides)
         if above * below > 0:
             return 1 if above > 0 else -1
         if above < 0 < below:
             if not holdable(self.problem, sign.name):
-                self._reject(t, f"{sign.of} is held at zero by more forces than one that contain multipliers")
+                self._reject(t, f"{sign.of} slides under several forces that contain multipliers")
             if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
-                self._reject(t, f"{self._signs[other].of} and {sign.of} are both held at zero")
+                self._reject(t, f"{self._signs[other].of} and {sign.of} slide at the same time")
             return SLIDING
         if above > 0 > below:
             self._reject(t, f"{sign.of} is zero, and the motion may leave to either side")
@@ -441,7 +441,7 @@ class HybridMotion:
         return self._with_reactions(pattern, t, state)
 
     def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """Return the sign with which a motion starts from a surface."""
+        """Return the sign with which a motion starts from a switching surface."""
         if sign.by is DependsOn.TIME:
             soon = t + self._precision.number(repr(SOON * self._span))
             return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1

@@ -32,7 +32,7 @@ class FoundStates(NamedTuple):
     """States that motions start from."""
 
     states: Numbers  # shape (2n, k): coordinates, then velocities
-    found: NDArray[np.bool_]  # shape (k,): whether they keep the constraints; the other states mean nothing
+    found: NDArray[np.bool_]  # shape (k,): True if they satisfy the constraints; the other states mean nothing
 
 
 class InitialStates:

@@ -36,13 +36,13 @@ from .time_dependence import time_dependence
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
 
-UNIQUE = "unique"  # name of the surfaces on which accelerations cease to be unique
+UNIQUE = "unique"  # name of the switching surfaces on which accelerations cease to be unique
 NO_ROUNDING: Mapping[str, float] = {}
 FREE = 1e-12  # of the nominal size of a multiplier: no reaction
 
 
 class SwitchingFunctions(SignedFunctions):
-    """The surfaces on which a pattern of signs ends.
+    """The switching surfaces on which a pattern of signs ends.
 
     Signs whose changes are known beforehand have none.
     """
@@ -90,7 +90,7 @@ class SwitchingFunctions(SignedFunctions):
 
         Returns
         -------
-        ndarray, shape (surfaces, k)
+        ndarray, shape (functions, k)
         """
         inputs = self._inputs(times, states)
         found = [as_floats(function(inputs)[0]) for function in self._functions]
@@ -99,14 +99,14 @@ class SwitchingFunctions(SignedFunctions):
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
-    """Return the function whose sign is the side of a surface."""
+    """Return the function whose sign is the side of a switching surface."""
     if pattern[name] == SLIDING:
         return switching_function(problem, "drive", name, {**pattern, name: to})
     return switching_function(problem, "switch", name, pattern)
 
 
 class Mode:
-    """The smooth motion of one pattern of signs, with its engine and its surfaces.
+    """The smooth motion of one pattern of signs, with its engine and its events.
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ class Mode:
 
     @cached_property
     def switching_functions(self) -> SwitchingFunctions:
-        """The surfaces on which the pattern ends."""
+        """The switching surfaces on which the pattern ends."""
         span = self._end - self._start
         return SwitchingFunctions(
             self.whole, self.pattern, self._precision, span, self._time_events, self._reactions_of_rounding

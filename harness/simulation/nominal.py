@@ -136,7 +136,7 @@ def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
     Parameters
     ----------
     problem : MotionProblem
-        The motion. Sizes that the scene gives are kept.
+        The motion. Sizes that the scene gives are unchanged.
     span : float
         Length of the time span, in the scene's unit.
 

@@ -4,12 +4,12 @@ With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
 
     dX/dt = F_x X + F_p.
 
-Where a surface s(t, x, p) = 0 switches F, X jumps with the time of the switching (Hiskens & Pai, Trajectory
+Where a switching surface s(t, x, p) = 0 changes F, X jumps with the time of the switching (Hiskens & Pai, Trajectory
 sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 204):
 
     X+ = X- + (F- - F+) dt/dp,    dt/dp = -(s_x X- + s_p)/(s_t + s_x F-).
 
-X keeps the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
+X satisfies the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
 """
 
 from collections.abc import Mapping, Sequence
@@ -359,7 +359,7 @@ class Sensitivities:
     def _surface(self, before: Mode, after: Mode) -> _Zero | None:
         """Return the zero between one mode and the next.
 
-        None if a motion leaves a surface on which it was sliding: the derivatives do not jump there.
+        None if a motion leaves a switching surface on which it was sliding: the derivatives do not jump there.
         """
         ended = set(before.problem.multipliers) - set(after.problem.multipliers)
         if ended:

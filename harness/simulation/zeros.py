@@ -75,7 +75,7 @@ class SignedFunctions(ABC):
         step : Step
             A step of the mode.
         left : sequence of str
-            Signs whose surfaces the motion has just left at the beginning of the step, where rounding decides.
+            Signs whose switching surfaces the motion has just left. Rounding decides their values.
 
         Returns
         -------
@@ -153,7 +153,7 @@ class SignedFunctions(ABC):
         return tuple(times) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
 
     def _samples(self, step: Step, places: Numbers) -> tuple[Numbers, Numbers]:
-        """Return the times of a step, and the functions there, shape (surfaces, k)."""
+        """Return the times of a step, and the functions there, shape (functions, k)."""
         numbers = np.array([self._precision.number(repr(float(place))) for place in places])
         times = step.start + (step.end - step.start) * numbers
         if places[-1] == 1.0:

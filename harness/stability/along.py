@@ -4,7 +4,7 @@ The basis N of the tangent space moves along by
 
     N' = H N,      H = R - N N^T A'/2,      J R = -J',    N^T A R = 0,
 
-which keeps N^T A N = 1 and turns N as little as the mass metric allows. H depends on the space alone, not on the basis.
+for which N^T A N = 1, and turns N as little as the mass metric allows. H depends on the space alone, not on the basis.
 The deviations x' = A(t) x have the state-transition matrix Phi(t), x(t) = Phi(t) x(t0). Both equations are linear.
 Collocation at nine equidistant nodes of a block solves them, of order ten (Hairer, Norsett & Wanner, Solving Ordinary
 Differential Equations I, section II.7). The error is estimated by every second node, of order six.

@@ -128,7 +128,7 @@ class LinearEquations:
             ``equation``, shape (n,), ``constraint``, ``rate`` and ``acceleration``, shape (g,): r, f, Df, DDf. Their
             gradients ``equation_by_q``, and so on by q, v, a, u, du, ddu. ``A_rate``, shape (n, n). ``output``, the
             scene's own, with its gradients, also by the multipliers that are looked at. ``reactions``, shape (n, f):
-            the forces that keep the constraints, those of multipliers, found controls and drives of one.
+            the forces of the constraints, those of multipliers, found controls and drives of one.
             ``output_by_forces``, shape (outputs, f).
         """
         n, g, r = len(self.coordinates), len(self.multipliers), len(self.controls)

@@ -303,7 +303,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        A sign changes or is held there. The motion has releases or forces with multipliers, or cannot be continued so
+        A sign changes or slides there. The motion has releases or forces with multipliers, or cannot be continued so
         far. The constraints are singular there.
     """
     require_analytic(replace(problem, signs=(), tables=()))
@@ -313,7 +313,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
 
 
 def require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
-    """Reject a state at which a sign changes, is held, or depends on a reaction.
+    """Reject a state at which a sign changes, slides, or depends on a reaction.
 
     A switching function counts as zero if it is small relative to its changes when time, coordinates and velocities
     move by nominal sizes.
@@ -562,7 +562,7 @@ def _state_space(
 ) -> tuple[Matrix, dict[str, Matrix], Matrix, dict]:
     """Return A, B, C, D from deviations with columns for xi, eta, du, du' and du''.
 
-    Of the forces that keep the constraints, C and D contain the first ones.
+    Of the forces of the constraints, C and D contain the first ones.
     """
     mass, mass_rate, U = here["equation_by_a"], here["A_rate"], here["constraint_by_u"]
     N, n, m, r = tangent.basis, *tangent.basis.shape, U.shape[1]

@@ -109,14 +109,16 @@ def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
     return [root for root in radicals if abs(sympy.im(root.evalf(30))) < NEAR]
 
 
-def solve_exactly(equations: LinearEquations, kept: Sequence[int], controls: Sequence[float]) -> RealSolutions | None:
+def solve_exactly(
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
+) -> RealSolutions | None:
     """Count the states at rest for constant controls.
 
     Parameters
     ----------
     equations : LinearEquations
         Of the scene.
-    kept : sequence of int
+    independent : sequence of int
         Indices of independent constraints, counted from 0. The multipliers of the others are zero.
     controls : sequence of float
         Constant values, in the order of the equations.
@@ -126,7 +128,7 @@ def solve_exactly(equations: LinearEquations, kept: Sequence[int], controls: Seq
     RealSolutions or None
         None if the equations are not polynomial, or too large, or have infinitely many complex solutions.
     """
-    polynomials = _equations_at_rest(equations, kept, controls)
+    polynomials = _equations_at_rest(equations, independent, controls)
     if not polynomials or prod(max(map(sum, each.itermonoms())) for each in polynomials) > SOLUTIONS:
         return None
     basis = groebner(polynomials, polynomials[0].ring)

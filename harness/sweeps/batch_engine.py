@@ -82,7 +82,7 @@ class BatchEngine:
     tol : float
         Tolerance of a step.
     projects : bool
-        Whether the states are kept on the constraints.
+        True if the states are projected onto the constraints.
     along : sequence of Expression
         Quantities to look at along the motion.
     look : callable

@@ -7,7 +7,7 @@
     zero(EXPR)          the first time after the initial time at which it crosses zero, empty where it does not
     free                true if the multipliers stay at zero, condition (10) of free motion
     radius              radius of convergence of the initial motion
-    residual            how far the end is from the constraints. It is kept in any case
+    residual            how far the end is from the constraints. It is always recorded
 
 The end is where the scene's `until` ends the motion, or else its time span. At a given time after it there is nothing.
 EXPR is made of t, coordinates, dot(x), ddot(x), multipliers, Lambda[s] and controls where the scene observes them,
@@ -86,7 +86,7 @@ def read_quantities(texts: Iterable[str]) -> tuple[OutputQuantity, ...]:
     Raises
     ------
     HolonomError
-        One of them cannot be kept.
+        One of them is not an output.
     """
     items = [item for text in texts for item in items_of(text)]
     return tuple(dict.fromkeys(_quantity(item) for item in items))
@@ -186,4 +186,4 @@ def _time(written: str, text: str) -> Fraction:
 
 
 def _error(text: str, reason: str) -> HolonomError:
-    return HolonomError(ErrorKind.NOT_KEPT, detail=f"{text[:60]} {reason}")
+    return HolonomError(ErrorKind.NOT_AN_OUTPUT, detail=f"{text[:60]} {reason}")

@@ -12,7 +12,7 @@ from ..program.heyoka_function import import_heyoka
 from ..simulation.evaluation import Evaluation, in_full_vectors
 
 NEWTON = 4  # steps of Newton's method, which from near samples reach rounding
-DIFFERENT = 8  # numbers of powers whose functions are kept
+DIFFERENT = 8  # numbers of powers whose functions are cached
 
 
 @lru_cache(DIFFERENT)

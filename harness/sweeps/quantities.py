@@ -30,7 +30,7 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
-                ErrorKind.NOT_KEPT, detail=f"unknown quantity {unknown[0]}: expected one of {', '.join(there)}"
+                ErrorKind.NOT_AN_OUTPUT, detail=f"unknown quantity {unknown[0]}: expected one of {', '.join(there)}"
             )
 
 
@@ -107,7 +107,7 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
     list of heyoka expression
         One for each quantity.
     """
-    named = {f"kept[{place}]": quantity for place, quantity in enumerate(quantities)}
+    named = {f"output[{place}]": quantity for place, quantity in enumerate(quantities)}
     program = Program(
         scene=None,
         solve=None,

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 CORNERED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
-GROUP = 10_000  # rows that are held in memory at a time, whatever the chunk
+GROUP = 10_000  # rows in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep
 
@@ -103,7 +103,7 @@ class RowMaker:
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
-                ErrorKind.NOT_KEPT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
+                ErrorKind.NOT_AN_OUTPUT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
             )
 
     @property
@@ -248,7 +248,7 @@ class RowMaker:
     def _keep(
         self, rows: "_Rows", there: NDArray, ends: Floats, states: Floats, points: Mapping[float, Floats]
     ) -> None:
-        """Keep numbers at the ends, shape (k,), and at times that are not after them."""
+        """Record numbers at the ends, shape (k,), and at times that are not after them."""
         place = 0
         for output in self.plan.outputs:
             if output.kind is Kind.FINAL:
@@ -260,7 +260,7 @@ class RowMaker:
                 place += 1
 
     def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
-        """Keep numbers of quantities along the motion, shape (numbers, k)."""
+        """Record numbers of quantities along the motion, shape (numbers, k)."""
         for output, numbers in zip(self._looks, seen, strict=False):
             rows.record(output.text, there, numbers, there_is=(output.kind is not Kind.ZERO) | ~np.isnan(numbers))
         if any(self._free):
@@ -306,7 +306,7 @@ class RowMaker:
         if not self._start <= time <= self._end:
             span = f"{self._start:.10g} to {self._end:.10g}"
             raise HolonomError(
-                ErrorKind.NOT_KEPT, detail=f"{output.text} asks for a time outside of the motion, {span}"
+                ErrorKind.NOT_AN_OUTPUT, detail=f"{output.text} asks for a time outside of the motion, {span}"
             )
         return time
 
@@ -379,7 +379,7 @@ def _require_smooth(problem: MotionProblem, recorded: Sequence[OutputQuantity]) 
         for name in sorted(names_in(each.quantity) & set(problem.outputs.outputs)):
             if _has_corners(computing(problem.outputs, {name})):
                 raise HolonomError(
-                    ErrorKind.NOT_KEPT,
+                    ErrorKind.NOT_AN_OUTPUT,
                     detail=f"{each.text} contains {name}, which has a corner and can be recorded at times only",
                 )
 
@@ -397,7 +397,7 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuan
         ):
             if name not in known:
                 raise HolonomError(
-                    ErrorKind.NOT_KEPT, detail=f"{output.text} contains {name}: expected one of {', '.join(known)}"
+                    ErrorKind.NOT_AN_OUTPUT, detail=f"{output.text} contains {name}: expected one of {', '.join(known)}"
                 )
 
 

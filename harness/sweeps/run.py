@@ -84,7 +84,7 @@ class Sweep:
         Parameters
         ----------
         quantity : str or None
-            A column. None for the first that is kept.
+            A column. None for the first recorded one.
 
         Returns
         -------

@@ -1,7 +1,7 @@
 """Integration of one motion of a sweep as `holonom simulate` integrates it.
 
 It is used if a batch element is not enough: for singular configurations, switchings, redundant constraints and
-localized features. A motion that cannot be integrated to its end keeps the message of its error.
+localized features. A motion that cannot be integrated to its end has the message of its error.
 """
 
 from collections.abc import Callable, Sequence
@@ -108,7 +108,7 @@ class SingleMotion(NamedTuple):
 
 
 class _Look:
-    """Looks at quantities along a motion, step by step, and keeps states at stops."""
+    """Looks at quantities along a motion, step by step, and records states at stops."""
 
     def __init__(self, values: Callable[[Mode, Floats, Floats], Floats], along: int, stops: Sequence[float]) -> None:
         self._values, self._along, self._stops = values, along, stops

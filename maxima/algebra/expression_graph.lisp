@@ -3,7 +3,7 @@
 ;;; A value is a node of a graph; the same value is the same node, however it was come by:
 ;;;
 ;;;     symbol   q1, dot(u), %pi                 call   sin(x), atan2(y, x), a^b
-;;;     sum      c1*n1 + c2*n2 + ...             held   a node that is not to be opened again
+;;;     sum      c1*n1 + c2*n2 + ...             opaque a node that is not to be opened again
 ;;;     product  n1^e1 * n2^e2 * ...
 ;;;
 ;;; with numbers c, whole numbers e and nodes n. A number is a coefficient of the node `one', the empty product.
@@ -27,7 +27,7 @@
 
 (defstruct node
   number                                   ; order of birth: parts come before the whole
-  kind                                     ; symbol, sum, product, call or held
+  kind                                     ; symbol, sum, product, call or opaque
   parts                                    ; sum: terms; product: factors; call: (operator . terms)
   (gradient 'unknown))                     ; list of (position . term), once asked for
 
@@ -263,7 +263,7 @@
       (scaled-term (/ (term-coefficient b)) a)
       (product-of (list a (power-of b -1)))))
 
-;;; ---- calls and held nodes --------------------------------------------------------------
+;;; ---- calls and opaque nodes --------------------------------------------------------------
 
 (defun call-of (operator &rest terms)
   (node-term (node-of 'call (cons operator terms)
@@ -275,12 +275,12 @@
 (defun maxima-call (operator arguments)
   (if (eq operator '%exp) (list '(mexpt) '$%e (car arguments)) (cons (list operator) arguments)))
 
-(defun held-term (term)
+(defun opaque-term (term)
   "The same value, but not opened any more: a factor of products as it is."
   (let ((node (term-node term)))
     (if (and (member (node-kind node) '(sum product)) (not (one-p node)))
         (make-term :coefficient (term-coefficient term)
-                   :node (node-of 'held node (list 'held (node-number node))))
+                   :node (node-of 'opaque node (list 'opaque (node-number node))))
         term)))
 
 ;;; ---- reading Maxima expressions --------------------------------------------------------
@@ -321,12 +321,12 @@
           ((get operator 'graph-derivative) (apply #'call-of operator terms))
           (t ($refuse '$function_without_program operator)))))
 
-;; Held, for a sum that is opened where numbers meet would double with every order.
+;; Opaque, for a sum that is opened where numbers meet would double with every order.
 (defun clenshaw-term (coefficients x)
   "c_0 + c_1 T_1(x) + ... + c_n T_n(x) by Clenshaw's recurrence b_k = c_k + 2 x b_(k+1) - b_(k+2)."
   (let ((b (number-term 0)) (above (number-term 0)))
     (dolist (c (reverse (cdr coefficients)))
-      (psetq b (held-term (sum-of (list (number-term c) (product-of (list (number-term 2) x b))
+      (psetq b (opaque-term (sum-of (list (number-term c) (product-of (list (number-term 2) x b))
                                         (scaled-term -1 above))))
              above b))
     (sum-of (list (number-term (car coefficients)) (product-of (list x b)) (scaled-term -1 above)))))
@@ -374,7 +374,7 @@
   "Partial derivatives of a node by the nodes it is made of: list of (node . term)."
   (case (node-kind node)
     (symbol nil)
-    (held (list (cons (node-parts node) (number-term 1))))
+    (opaque (list (cons (node-parts node) (number-term 1))))
     (sum (mapcar #'(lambda (term) (cons (term-node term) (number-term (term-coefficient term))))
                  (node-parts node)))
     (product (mapcar #'(lambda (factor) (cons (factor-node factor) (partial-by-factor node factor)))
@@ -458,11 +458,11 @@
 
 (defun $graph_hold (term)
   "Holds what took a division by more than a symbol; plain products stay open to factoring."
-  (if (any-of-p #'computed-factor-p (factors-of (term-node term))) (held-term term) term))
+  (if (any-of-p #'computed-factor-p (factors-of (term-node term))) (opaque-term term) term))
 
 (defun computed-factor-p (factor)
   (let ((kind (node-kind (factor-node factor))))
-    (or (eq kind 'held) (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
+    (or (eq kind 'opaque) (and (minusp (factor-exponent factor)) (not (eq kind 'symbol))))))
 
 (defun $graph_zerop (term) (zero-term-p (expression-term term)))
 (defun $graph_numberp (term) (number-term-p (expression-term term)))

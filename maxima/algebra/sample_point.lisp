@@ -25,7 +25,7 @@
 (defvar *small-correction* (expt 10 -12) "Of the largest coordinate: a correction that needs no line search.")
 
 (defvar *contraction* 1/16
-  "Of a correction: what the constraints may miss of being linear along it, where the initial state is near its root.")
+  "Of a correction: the nonlinearity of the constraints allowed along it, where the initial state is near its root.")
 
 (defvar *starts-on-a-line* '(1/16 -1/16 1/8 -1/8 3/16 -3/16 1/4 -1/4 5/16 -5/16 3/8 -3/8 7/16 -7/16 1/2 -1/2
                              9/16 -9/16 5/8 -5/8 11/16 -11/16 3/4 -3/4 13/16 -13/16 7/8 -7/8 15/16 -15/16 1 -1)
@@ -78,7 +78,7 @@
                 (if (and (sample-point-scattered point) (not ($constantp (node-parts node))))
                     (scattered-value (node-parts node) point))
                 (number-from-maxima (node-parts node))))
-    (held (node-value (node-parts node) point))
+    (opaque (node-value (node-parts node) point))
     (sum (sum-of-numbers (mapcar #'(lambda (term) (value-at term point)) (node-parts node))))
     (product (let ((value 1))
                (dolist (factor (node-parts node) value)
@@ -182,7 +182,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
         (setq before size next (corrected-point point corrections))
         (if (negligible-p corrections residuals point) (return next))))))
 
-;; Sums within a constraint count as zero before it does: it may miss zero by more than its own share.
+;; Sums within a constraint count as zero before it does: its residual may be more than its own share.
 (defun negligible-p (corrections residuals point)
   "Whether the corrections are rounding errors, and remove the residuals to first order."
   (and (< (largest-correction corrections) (* *zero-share* (largest-coordinate point)))
@@ -342,12 +342,12 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 ;;; ---- an initial state --------------------------------------------------------------------
 
-(defvar *kept-digits* 60)
+(defvar *point-digits* 60)
 
 (defun $values_near (point constraints jacobian metric names digits)
   "Values of the names to a number of digits, near those of the point in the metric, that make the constraints
 vanish; false where Newton's method does not get there."
-  (let* ((*kept-digits* digits)
+  (let* ((*point-digits* digits)
          (*digits-at-point* (+ digits 20))
          (*zero-share* (expt 10 (- 5 digits)))
          (*small-coordinate* *zero-share*)
@@ -433,16 +433,16 @@ vanish; false where Newton's method does not get there."
 (defun plain-number (number)
   "The fraction of few digits that the number agrees with; else its decimal digits."
   (or (simple-fraction number)
-      (let ((unit (expt 10 (- *kept-digits* (floor (* (log 2d0 10d0) (binary-magnitude number)))))))
+      (let ((unit (expt 10 (- *point-digits* (floor (* (log 2d0 10d0) (binary-magnitude number)))))))
         (/ (round (* number unit)) unit))))
 
 (defun simple-fraction (number)
-  "The first convergent of the continued fraction that is as near as the kept digits show."
+  "The first convergent of the continued fraction that is as near as those digits show."
   (let ((rest (abs number)) (p 1) (p-before 0) (q 0) (q-before 1) (size (abs number)))
-    (do () ((> q (expt 10 (floor *kept-digits* 4))))
+    (do () ((> q (expt 10 (floor *point-digits* 4))))
       (let ((whole (floor rest)))
         (psetq p (+ (* whole p) p-before) p-before p q (+ (* whole q) q-before) q-before q)
-        (if (<= (abs (- size (/ p q))) (* size (expt 10 (- 10 *kept-digits*))))
+        (if (<= (abs (- size (/ p q))) (* size (expt 10 (- 10 *point-digits*))))
             (return (* (signum number) (/ p q))))
         (if (= rest whole) (return nil))
         (setq rest (/ 1 (- rest whole)))))))

@@ -4,7 +4,7 @@
 ;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        if a < b then X else Y
 ;;;                                                                     = (1 + s)/2 X + (1 - s)/2 Y
 ;;;
-;;; where s is the sign of g, of a - b, of b - a, a symbol for each such switching function. They are kept in the order
+;;; where s is the sign of g, of a - b, of b - a, a symbol for each such switching function. They are in the order
 ;;; of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g) stay.
 
 (in-package :maxima)

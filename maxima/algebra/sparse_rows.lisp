@@ -6,9 +6,9 @@
 
 (defun $columns_after (n entries)
   "The entries of columns n+1, n+2, ..., numbered from 1."
-  (let ((kept nil))
-    (dolist (entry (cdr entries) (mlist-of (nreverse kept)))
-      (if (> (second entry) n) (push (mlist-of (list (- (second entry) n) (third entry))) kept)))))
+  (let ((remaining nil))
+    (dolist (entry (cdr entries) (mlist-of (nreverse remaining)))
+      (if (> (second entry) n) (push (mlist-of (list (- (second entry) n) (third entry))) remaining)))))
 
 (defun $dense_list (entries size)
   "A list of the terms of columns 1 to size."

@@ -4,7 +4,7 @@
 
 (defun $readable (e)
   "One line of Maxima text, dot(q1) spelt as in the scene."
-  (remove #\\ (if (plainly-written-p e) (letters-of-name e) (text-of-expression e))))
+  (remove #\\ (if (plainly-written-p e) (characters-of-name e) (text-of-expression e))))
 
 (defun plainly-written-p (e)
   "Whether it is a name that Maxima shows character by character."
@@ -16,11 +16,11 @@
 
 (defun $reserved_name (x)
   "lambda1, lambda2, ..."
-  (and (symbolp x) (numbered-name-p (letters-of-name x) "lambda")))
+  (and (symbolp x) (numbered-name-p (characters-of-name x) "lambda")))
 
-(defun $unused_name (letters names)
+(defun $unused_name (characters names)
   "The prefix, repeated until with a number after it it is none of the names."
-  (let ((once (text-of-expression letters)) (texts (mapcar #'text-of-expression (cdr names))))
+  (let ((once (text-of-expression characters)) (texts (mapcar #'text-of-expression (cdr names))))
     (do ((prefix once (concatenate 'string prefix once)))
         ((not (any-of-p #'(lambda (text) (numbered-name-p text prefix)) texts))
          (intern-invert-case (concatenate 'string "$" prefix))))))
@@ -35,4 +35,4 @@
 
 (defun $reads_as_constant (name)
   "Return true if a document that contains the name states a number or a truth value."
-  (and (member (letters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))
+  (and (member (characters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))

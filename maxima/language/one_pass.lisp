@@ -65,16 +65,16 @@
 
 (defun $name_around (before name after)
   "The name with a prefix and a suffix; concat would take  set,  an operator, by its sign {."
-  (intern-invert-case (concatenate 'string "$" before (letters-of-name name) after)))
+  (intern-invert-case (concatenate 'string "$" before (characters-of-name name) after)))
 
 (defun $dotted (dots x)
   "dot(x), ddot(x), dddot(x): of a name another name, which is made once; of a list the list of them."
   (cond ((symbolp x)
          (or (get x dots)
-             (setf (get x dots) ($name_around (concatenate 'string (letters-of-name dots) "(") x ")"))))
+             (setf (get x dots) ($name_around (concatenate 'string (characters-of-name dots) "(") x ")"))))
         (($listp x) (mlist-of (mapcar #'(lambda (each) ($dotted dots each)) (cdr x))))
         (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
-        (t ($refuse '$dot_of_expression (letters-of-name dots) x))))
+        (t ($refuse '$dot_of_expression (characters-of-name dots) x))))
 
 (defun $initial (x)
   "x_0, a name that is made once."
@@ -95,10 +95,10 @@
 (defun $names_outside (table names) (mlist-of (remove-if #'(lambda (name) (gethash name table)) (cdr names))))
 
 (defun $without_repeats (items)
-  (let ((met (make-hash-table :test 'equal :size 16)) (others nil) (kept nil))
-    (dolist (x (cdr items) (mlist-of (nreverse kept)))
-      (cond ((atom x) (unless (gethash x met) (setf (gethash x met) t) (push x kept)))
-            ((not (member x others :test #'alike1)) (push x others) (push x kept))))))
+  (let ((met (make-hash-table :test 'equal :size 16)) (others nil) (distinct nil))
+    (dolist (x (cdr items) (mlist-of (nreverse distinct)))
+      (cond ((atom x) (unless (gethash x met) (setf (gethash x met) t) (push x distinct)))
+            ((not (member x others :test #'alike1)) (push x others) (push x distinct))))))
 
 (defun $items_inside (table items)
   "Of  name = value  those whose name the table has."

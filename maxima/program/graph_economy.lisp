@@ -22,13 +22,13 @@
     (sum (mapcar #'term-node (node-parts node)))
     (product (mapcar #'factor-node (node-parts node)))
     (call (mapcar #'term-node (cdr (node-parts node))))
-    (held (list (node-parts node)))))
+    (opaque (list (node-parts node)))))
 
 (defun nodes-in (node)
-  "The same, but seen through those that are held."
-  (mapcar #'unheld (own-parts (unheld node))))
+  "The same, but seen through opaque nodes."
+  (mapcar #'opened-node (own-parts (opened-node node))))
 
-(defun unheld (node) (if (eq (node-kind node) 'held) (node-parts node) node))
+(defun opened-node (node) (if (eq (node-kind node) 'opaque) (node-parts node) node))
 
 (defstruct census
   nodes                                    ; all live nodes, in order of birth
@@ -38,7 +38,7 @@
   "The nodes that the given terms need, and how often each is used."
   (let ((census (make-census)) (waiting nil) (live nil))
     (dolist (root roots)
-      (let ((node (unheld (term-node root)))) (if (first-use-p node census) (push node waiting))))
+      (let ((node (opened-node (term-node root)))) (if (first-use-p node census) (push node waiting))))
     (do () ((null waiting))
       (let ((node (pop waiting)))
         (push node live)
@@ -55,7 +55,7 @@
 
 (defun uses-of (node census)
   "None, of a node that is younger than the census."
-  (let ((number (node-number (unheld node))) (uses (census-uses census)))
+  (let ((number (node-number (opened-node node))) (uses (census-uses census)))
     (if (< number (length uses)) (aref uses number) 0)))
 
 (defun shared-p (node census) (> (uses-of node census) 1))
@@ -105,7 +105,7 @@
                                                (factor-exponent factor)))
                                  parts)))
     (call (call-again (car parts) (mapcar #'(lambda (term) (rewritten-term term rewriting)) (cdr parts))))
-    (held (held-term (rewritten-node parts rewriting)))))
+    (opaque (opaque-term (rewritten-node parts rewriting)))))
 
 (defun call-again (operator terms)
   (if (and (eq operator 'mexpt) (number-term-p (second terms)))
@@ -126,41 +126,41 @@
     (mapc #'(lambda (part term)
               (if (shared-p (term-node part) census) (push term closed) (push term open)))
           (node-parts node) terms)
-    (if (and (equal terms (node-parts node)) (null (commonest-letter open)))
+    (if (and (equal terms (node-parts node)) (null (commonest-base open)))
         (node-term node)
         (factored (nreverse open) closed))))
 
 (defun factored (open closed)
-  (let ((letter (commonest-letter open)))
-    (if (null letter)
+  (let ((base (commonest-base open)))
+    (if (null base)
         (sum-of (append open closed))
-        (let* ((inside (remove-if-not #'(lambda (term) (contains-letter-p term letter)) open))
-               (outside (remove-if #'(lambda (term) (contains-letter-p term letter)) open))
-               (divided (mapcar #'(lambda (term) (divided-by-letter term letter)) inside))
-               (product (product-of (list (factored divided nil) (letter-term letter)))))
+        (let* ((inside (remove-if-not #'(lambda (term) (contains-base-p term base)) open))
+               (outside (remove-if #'(lambda (term) (contains-base-p term base)) open))
+               (divided (mapcar #'(lambda (term) (divided-by-base term base)) inside))
+               (product (product-of (list (factored divided nil) (base-term base)))))
           (factored (cons product outside) closed)))))
 
 ;;; A factor is (node . 1) or (node . -1), for a divisor.
 
-(defun letter-of-factor (factor) (cons (factor-node factor) (signum (factor-exponent factor))))
-(defun letter-term (letter) (power-of (node-term (car letter)) (cdr letter)))
+(defun base-of-factor (factor) (cons (factor-node factor) (signum (factor-exponent factor))))
+(defun base-term (base) (power-of (node-term (car base)) (cdr base)))
 
-(defun contains-letter-p (term letter)
+(defun contains-base-p (term base)
   (any-of-p #'(lambda (factor)
-                (and (eq (factor-node factor) (car letter)) (plusp (* (cdr letter) (factor-exponent factor)))))
+                (and (eq (factor-node factor) (car base)) (plusp (* (cdr base) (factor-exponent factor)))))
             (factors-of (term-node term))))
 
-(defun divided-by-letter (term letter)
-  (product-of (list term (power-of (node-term (car letter)) (- (cdr letter))))))
+(defun divided-by-base (term base)
+  (product-of (list term (power-of (node-term (car base)) (- (cdr base))))))
 
-(defun commonest-letter (terms)
+(defun commonest-base (terms)
   "The factor that most of the terms contain, if it is more than one of them."
   (let ((counts nil) (best nil))
     (dolist (term terms)
       (dolist (factor (factors-of (term-node term)))
-        (let* ((letter (letter-of-factor factor))
-               (count (assoc letter counts :test #'equal)))
-          (if count (incf (cdr count)) (push (cons letter 1) counts)))))
+        (let* ((base (base-of-factor factor))
+               (count (assoc base counts :test #'equal)))
+          (if count (incf (cdr count)) (push (cons base 1) counts)))))
     (dolist (count counts)
       (if (and (> (cdr count) 1) (or (null best) (> (cdr count) (cdr best)))) (setq best count)))
     (car best)))
@@ -192,12 +192,12 @@
 (defun members-of (node kind)
   (if (eq kind 'sum)
       (mapcar #'(lambda (term) (cons (term-coefficient term) (term-node term))) (node-parts node))
-      (mapcan #'repeated-letters (node-parts node))))
+      (mapcan #'repeated-bases (node-parts node))))
 
 (defvar *longest-power-written-out* 3
   "Powers up to this one are taken for repeated factors: x^2*y may share x*y.")
 
-(defun repeated-letters (factor)
+(defun repeated-bases (factor)
   (let ((node (factor-node factor)) (exponent (factor-exponent factor)))
     (if (<= (abs exponent) *longest-power-written-out*)
         (make-list (abs exponent) :initial-element (cons (signum exponent) node))
@@ -255,7 +255,7 @@
          (bags (remove-if-not #'(lambda (bag) (multiple-of-pair bag a b)) (standing-bags standing))))
     (when (cdr bags)
       (let* ((pair (pair-term a b kind))
-             (others (remove (unheld (term-node pair)) bags :key #'bag-node)))
+             (others (remove (opened-node (term-node pair)) bags :key #'bag-node)))
         (dolist (bag others others) (put-pair bag a b pair kind))))))
 
 (defun multiple-of-pair (bag a b)
@@ -272,7 +272,7 @@
 
 (defun pair-term (a b kind)
   "The pair as one node not to be opened, as it was found first; 1/(x*y) counts as x*y."
-  (held-term
+  (opaque-term
    (cond ((eq kind 'sum) (sum-of (list (member-as-term a) (member-as-term b))))
          ((minusp (max (car a) (car b))) (product-of (list (node-term (cdr a)) (node-term (cdr b)))))
          (t (product-of (list (power-of (node-term (cdr a)) (car a))

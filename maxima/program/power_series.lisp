@@ -12,7 +12,7 @@
 ;;; with (n k) = n!/(k! (n-k)!), and g = f'(x), itself a value of the expression graph.
 ;;;
 ;;; Numbers are Lisp rationals; t - t0 is measured in units of 1/scale, so that the derivatives are all but whole
-;;; numbers. Where numbers are rounded, a series also keeps mantissas and exponents of two. The sums are a few passes of
+;;; numbers. Where numbers are rounded, a series also has mantissas and exponents of two. The sums are a few passes of
 ;;; `mapcar', which is compiled; this file is loaded as source.
 
 (in-package :maxima)
@@ -133,7 +133,7 @@
 (defun $series_machine (definitions rates outputs)
   "The steps that compute all outputs, a list of [name, expression], order by order.
    definitions: [name, expression] in the order in which they can be computed;
-   rates: [name, expression], for what starts at a given value and changes at a rate."
+   rates: [name, expression], for what starts at a given value and has a given time derivative."
   (let ((*machine* (make-series-machine)))
     (dolist (rate (cdr rates)) (remember-term rate (series-machine-rates *machine*)))
     (dolist (definition (cdr definitions))
@@ -171,7 +171,7 @@
                 (sum (sum-series (node-parts node)))
                 (product (product-series (node-parts node)))
                 (call (function-series node (car (node-parts node)) (cdr (node-parts node))))
-                (held (series-of-node (node-parts node))))))))
+                (opaque (series-of-node (node-parts node))))))))
 
 (defun symbol-series (symbol)
   (let ((definition (gethash symbol (series-machine-definitions *machine*))))
@@ -357,9 +357,9 @@
 (defun $without_rounded_zeros (coarse fine added)
   "The finer expansion, where rounding has left no zero."
   (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added)))
-    (flet ((kept (pair level) (if (rounded-zero-p pair added level) 0 (maxima-number (cdr pair)))))
+    (flet ((without-rounding (pair level) (if (rounded-zero-p pair added level) 0 (maxima-number (cdr pair)))))
       (cons '(mlist)
-            (mapcar #'(lambda (x row) (list '(mlist) (second x) (cons '(mlist) (mapcar #'kept row levels))))
+            (mapcar #'(lambda (x row) (list '(mlist) (second x) (cons '(mlist) (mapcar #'without-rounding row levels))))
                     (cdr fine) rows)))))
 
 (defun rounded-zero-p (pair added levels)

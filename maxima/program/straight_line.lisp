@@ -21,7 +21,7 @@
 (defun sign-of (node signs)
   "1, or -1 if the negative of the node is what is written."
   (case (node-kind node)
-    (held (sign-of (node-parts node) signs))
+    (opaque (sign-of (node-parts node) signs))
     (sum (if (aref (signs-turned signs) (node-number node)) -1 1))
     (product (let ((sign 1))
                (dolist (factor (node-parts node) sign)
@@ -45,7 +45,7 @@
 (defun chosen-signs (roots census)
   "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
   (let ((signs (make-signs)))
-    (dolist (root roots) (push root (aref (signs-roots signs) (node-number (unheld (term-node root))))))
+    (dolist (root roots) (push root (aref (signs-roots signs) (node-number (opened-node (term-node root))))))
     (dolist (node (census-nodes census))
       (dolist (part (nodes-in node)) (push node (aref (signs-users signs) (node-number part)))))
     (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
@@ -123,7 +123,7 @@
 (defun new-writing (node program)
   (case (node-kind node)
     (symbol (make-writing :expression (node-parts node)))
-    (held (writing-of (node-parts node) program))
+    (opaque (writing-of (node-parts node) program))
     (sum (sum-writing node program))
     (product (product-writing node program))
     (call (call-writing (node-parts node) program))))

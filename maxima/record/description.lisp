@@ -256,10 +256,10 @@
     (cons name (read-json in))))
 
 (defun read-json-string (in)
-  (let ((letters nil))
+  (let ((characters nil))
     (do ((c (read-char in) (read-char in)))
-        ((char= c #\") (coerce (nreverse letters) 'string))
-      (push (if (char= c #\\) (read-char in) c) letters))))
+        ((char= c #\") (coerce (nreverse characters) 'string))
+      (push (if (char= c #\\) (read-char in) c) characters))))
 
 (defun read-json-integer (in)
   (let ((digits nil))

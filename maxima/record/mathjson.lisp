@@ -130,4 +130,4 @@
   (let ((digits (ceiling (* (car (last (car e))) (log 2d0 10d0)))))
     (write-number (decimal-digits (rational-of-bigfloat e) (+ 2 digits)) out)))
 
-(defun mathjson-symbol (symbol) (or (cdr (assoc symbol *mathjson-constants*)) (letters-of-name symbol)))
+(defun mathjson-symbol (symbol) (or (cdr (assoc symbol *mathjson-constants*)) (characters-of-name symbol)))

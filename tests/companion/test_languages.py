@@ -131,7 +131,7 @@ def bracketed(results, tmp_path_factory):
         changed.setattr(directives, "write_mo", write_bracketed)
         changed.setattr(gallery, "figures_of", lambda shown: {})
         changed.setattr(Figure, "savefig", lambda figure, file, **how: file.write("<svg/>"))
-        companion_pages.environment.cache_clear()  # in which the words of templates are kept, in proper Chinese
+        companion_pages.environment.cache_clear()  # which stores the words of templates, in proper Chinese
         shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
         with speaking("zh"):
             site.build(SOURCES, directory, shelf, {"exclude_patterns": [*exclude_patterns, "reference"]})

@@ -35,8 +35,8 @@ def test_every_equation_has_one_verdict_and_the_third_opinion_is_asked(
     paper_record: Record, paper_description: Description
 ) -> None:
     verdicts = check_record(paper_record, paper_description).verdicts
-    held = [equation.id for equation in paper_record.derivations[0].equations]
-    assert [found.id for found in verdicts if not found.scene] == [*held, *NUMERICAL]
+    recorded = [equation.id for equation in paper_record.derivations[0].equations]
+    assert [found.id for found in verdicts if not found.scene] == [*recorded, *NUMERICAL]
 
 
 @pytest.mark.long

@@ -130,7 +130,7 @@ scene : holonomic_scene(system, initial_state = makelist(q[j] = j, j, 7))$
     assert verdicts(record, described, wrong)["19"] is Verdict.DISAGREES
 
 
-def test_numbers_for_the_scene_alone_are_not_held_against_all_parameters(tmp_path):
+def test_numbers_for_the_scene_alone_do_not_count_for_all_parameters(tmp_path):
     """Four coordinates of a crank and rod are numbers, as r = 1 and l = 2 have it; the check put other lengths in."""
     file = tmp_path / "scene.mac"
     file.write_text("""

@@ -44,7 +44,7 @@ def test_a_multiplier_of_the_other_sign_is_found() -> None:
 
 
 def two_constraints() -> MechanicalSystem:
-    """The paper's example with q1 held at the control as well."""
+    """The paper's example with q1 equal to the control as well."""
     system = paper_example()
     constraints = (*system.constraints, system.coordinates[0] - system.controls[0])
     return dataclasses.replace(system, constraints=constraints, multipliers=tuple(sp.symbols("lambda1:3", real=True)))

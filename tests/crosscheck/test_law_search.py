@@ -10,7 +10,7 @@ t, u, w, p, x, y = sp.symbols("t u w p x y", real=True, seq=True)
 rate = dotted("dot", u)
 
 
-def held(force, constraints=(x,), controls=(u,)) -> MechanicalSystem:
+def guided(force, constraints=(x,), controls=(u,)) -> MechanicalSystem:
     """A unit mass in a plane; the given force acts along x."""
     energy = (dotted("dot", x) ** 2 + dotted("dot", y) ** 2) / 2
     force = force if isinstance(force, tuple) else (force, sp.Integer(0))
@@ -21,9 +21,9 @@ def held(force, constraints=(x,), controls=(u,)) -> MechanicalSystem:
 @pytest.mark.parametrize(
     ("system", "span", "law"),
     [
-        (held(((1 - t) * u**2 - 1) * y), (0.0, 0.5), lambda t, u: (1 - t) * u**2 - 1),
-        (held((u**3 + u - t) * y), None, lambda t, u: u**3 + u - t),
-        (held(y * (sp.exp(u) - t - 3)), None, lambda t, u: sp.exp(u) - t - 3),
+        (guided(((1 - t) * u**2 - 1) * y), (0.0, 0.5), lambda t, u: (1 - t) * u**2 - 1),
+        (guided((u**3 + u - t) * y), None, lambda t, u: u**3 + u - t),
+        (guided(y * (sp.exp(u) - t - 3)), None, lambda t, u: sp.exp(u) - t - 3),
     ],
     ids=["of a square", "of a cubic", "of an exponential"],
 )
@@ -40,16 +40,16 @@ def test_search_finds_the_value_of_a_law(system, span, law):
     ],
 )
 def test_search_draws_parameters_of_both_signs(force, holds):
-    found = find_free_law(held(force), {}, None, "seed")
+    found = find_free_law(guided(force), {}, None, "seed")
     assert holds(found.parameters["p"], found.controls["u"])
 
 
 @pytest.mark.parametrize(
     "system",
     [
-        held((1 - t**2) * rate * y + t * u * y),
-        held((sp.Integer(0), -y), (y - u,)),
-        held((u - t) * y + (u * w**2 + 1) * y**2, controls=(u, w)),
+        guided((1 - t**2) * rate * y + t * u * y),
+        guided((sp.Integer(0), -y), (y - u,)),
+        guided((u - t) * y + (u * w**2 + 1) * y**2, controls=(u, w)),
     ],
     ids=["of first order", "of second order", "two controls"],
 )
@@ -60,12 +60,12 @@ def test_search_finds_solutions_of_differential_equations(system):
 @pytest.mark.parametrize(
     "system",
     [
-        held((1 + t * u**2) * y),
-        held((u - t) * y + rate * y**2),
-        held((rate - u) * y + (u - t**2) * y**2),
-        held(y + u),
-        held((sp.Integer(0), sp.Integer(0)), (x**2 + y**2 - 1 - u**2,)),
-        held((sp.Integer(0), -x), (y - u * x**2,)),
+        guided((1 + t * u**2) * y),
+        guided((u - t) * y + rate * y**2),
+        guided((rate - u) * y + (u - t**2) * y**2),
+        guided(y + u),
+        guided((sp.Integer(0), sp.Integer(0)), (x**2 + y**2 - 1 - u**2,)),
+        guided((sp.Integer(0), -x), (y - u * x**2,)),
     ],
     ids=["imaginary", "contradictory rate", "two equations", "no control there", "circle", "parabola"],
 )
@@ -83,4 +83,4 @@ def test_search_finds_no_law_where_there_is_none(system):
 )
 @pytest.mark.parametrize("seed", range(6))
 def test_search_takes_no_near_solution_for_a_law(force, span, seed):
-    assert find_free_law(held(force), {}, span, f"seed {seed}") is None
+    assert find_free_law(guided(force), {}, span, f"seed {seed}") is None

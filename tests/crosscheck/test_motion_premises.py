@@ -124,7 +124,7 @@ def test_only_a_nearer_start_is_reported(asked):
 
 
 def test_a_guess_on_the_constraints_is_no_nearer_start(tmp_path):
-    """The start has the digits of its text; its distance from the fraction -2/3 was held against it."""
+    """The start has the digits of its text; its distance from the fraction -2/3 was counted as an error."""
     file = tmp_path / "scene.mac"
     file.write_text("""load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [2*x + 3*y])$

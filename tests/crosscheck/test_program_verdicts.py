@@ -1,4 +1,4 @@
-"""The motion program, held against the equations of motion: right ones agree, and every wrong one is found."""
+"""The motion program, compared with the equations of motion: right ones agree, and every wrong one is found."""
 
 import math
 import random
@@ -121,7 +121,7 @@ def test_every_wrong_program_is_found(programs, name):
 
 
 def looked_at(source: Source, scene: str, which: str) -> bool:
-    """Of prescribed reactions the motion alone is held against its definition."""
+    """Of prescribed reactions the motion alone is compared with its definition."""
     described = next(each for each in source.description().scenes if each.name == scene)
     return which == "motion" or not described.prescribed_reactions
 

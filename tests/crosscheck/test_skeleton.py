@@ -44,7 +44,7 @@ def with_scene(record: Record, **changes: object) -> Record:
     return dataclasses.replace(record, scenes=(scene, *record.scenes[1:]))
 
 
-def held(record: Record, wanted: str) -> Equation:
+def equation_of(record: Record, wanted: str) -> Equation:
     (found,) = [each for each in record.derivations[0].equations if each.id == wanted]
     return found
 
@@ -58,8 +58,8 @@ class TestEquations:
         for part in ("derivations", "scenes"):
             first, *others = getattr(every_term_record, part)
             for each in first.equations:
-                kept = tuple(equation for equation in first.equations if equation != each)
-                parts = (dataclasses.replace(first, equations=kept), *others)
+                others = tuple(equation for equation in first.equations if equation != each)
+                parts = (dataclasses.replace(first, equations=others), *others)
                 false = dataclasses.replace(every_term_record, **{part: parts})
                 assert each.id in disagreeing(false, every_term_description)
 
@@ -130,7 +130,7 @@ def coupled(write_scene) -> Source:
 
 def test_zeros_left_out_of_a_large_mass_matrix_are_zeros_and_nothing_else_may_be(coupled):
     record, description = derived_record(coupled, closed_form_size=8), coupled.description()
-    split = held(record, "kinetic_energy")
+    split = equation_of(record, "kinetic_energy")
     names = [str(relation.left) for relation in split.relations]
     assert names == ["A[1, 1]", "A[1, 3]", "A[2, 2]", "A[3, 1]", "A[3, 3]", "B[1]", "B[2]", "B[3]", "T0"]
     assert not disagreeing(record, description, 8)
@@ -209,7 +209,7 @@ def test_the_third_opinion_is_asked_for(every_term_record, every_term_descriptio
 
 
 def test_what_is_wrong_disagrees_and_says_where(every_term_record, every_term_description):
-    (constraint,) = held(every_term_record, "constraints").relations
+    (constraint,) = equation_of(every_term_record, "constraints").relations
     wrong = Equation("constraints", "1", "constraints", (Relation(constraint.left_tree, 1),))
     false = with_equations(every_term_record, wrong, *every_term_record.derivations[0].equations[1:])
     found = check_record(false, every_term_description).verdicts[0]

@@ -173,7 +173,7 @@ def test_pairs_have_regular_points_of_their_own() -> None:
     assert verify(Comparison(pairs), "seed").verdict is Verdict.DISAGREES
 
 
-def test_a_rounded_number_is_held_to_fifty_digits() -> None:
+def test_a_rounded_number_is_compared_to_fifty_digits() -> None:
     def verdict(digits: int) -> Verdict:
         rounded = {X: sp.Rational(int(sp.sqrt(2).n(80) * 10**digits), 10**digits)}
         return verify(Comparison((Pair("x", sp.Integer(0), X**2 - 2),), given=rounded, rounded=rounded), "seed").verdict

@@ -179,6 +179,6 @@ def test_eliminate_is_maximas_own(tmp_path: Path):
 def test_the_library_is_not_in_the_users_lists(tmp_path: Path):
     # kill(all) took the library away, and with it all that a scene could still ask
     (file := tmp_path / "load.mac").write_text(
-        f"{HOLONOM}\nmade : [functions, values, structures]$\nkept : string(made)$\nkill(all)$\n{BALL}\n"
+        f"{HOLONOM}\nmade : [functions, values, structures]$\nbefore : string(made)$\nkill(all)$\n{BALL}\n"
     )
     assert json.loads(run_batch(file, "write_record"))["system"]["coordinates"] == ["east", "north"]

@@ -35,10 +35,10 @@ def test_there_are_five():
 )
 def test_a_notebook_runs_and_shows_what_it_showed(file, monkeypatch):
     monkeypatch.setenv("MOTIONS", "400")  # of the notebook about JAX
-    kept = nbformat.read(file, as_version=4)
+    stored = nbformat.read(file, as_version=4)
     ran = nbformat.read(file, as_version=4)
     NotebookClient(
         ran, timeout=120, kernel_name="python3", resources={"metadata": {"path": str(file.parent)}}
     ).execute()
-    assert all(cell.execution_count for cell in kept.cells if cell.cell_type == "code")
-    assert shown(ran) == shown(kept)
+    assert all(cell.execution_count for cell in stored.cells if cell.cell_type == "code")
+    assert shown(ran) == shown(stored)

@@ -600,9 +600,12 @@ WORK = [
         message_of(None, "--time-limit"),
         long=True,
     ),
-    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", message_of(ErrorKind.TOLERANCE_UNHELD)),
+    Fault("a tolerance of nan", "simulate scene.mac --until 1 --tol nan", message_of(ErrorKind.TOLERANCE_OUT_OF_RANGE)),
     Fault(
-        "a tolerance of zero", "simulate scene.mac --until 1 --tol 0", message_of(ErrorKind.TOLERANCE_UNHELD), long=True
+        "a tolerance of zero",
+        "simulate scene.mac --until 1 --tol 0",
+        message_of(ErrorKind.TOLERANCE_OUT_OF_RANGE),
+        long=True,
     ),
     *(
         Fault(f"a step of {text}", f"simulate scene.mac --until 1 --max-step {text}", says)

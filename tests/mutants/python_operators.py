@@ -15,7 +15,7 @@ WITHOUT = re.compile(
     r"(Add|Sub|Mul|Div|FloorDiv|Mod|Pow)_(RShift|LShift|Bit\w+))$"
 )
 EXCHANGED = {"any": "all", "all": "any", "min": "max", "max": "min", "floor": "ceil", "ceil": "floor"}
-KEPT = ("import_name", "import_from", "pass_stmt", "global_stmt", "nonlocal_stmt", "string")
+NEEDED = ("import_name", "import_from", "pass_stmt", "global_stmt", "nonlocal_stmt", "string")
 
 
 class _Ours(Operator):
@@ -56,8 +56,8 @@ class Statement(_Ours):
     """A statement, left out."""
 
     def _changes(self, node):
-        is_kept = node.type != "simple_stmt" or node.children[0].type in KEPT
-        if not is_kept and node.get_code().strip() != "return None":
+        is_needed = node.type != "simple_stmt" or node.children[0].type in NEEDED
+        if not is_needed and node.get_code().strip() != "return None":
             yield "pass\n"
 
 

@@ -176,9 +176,9 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=1)
     given = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))  # the copy goes, whatever ends the run
-    kept = json.loads(given.results.read_text(encoding="utf-8")) if given.results.is_file() else {}
-    seed = given.seed or kept.get("seed") or str(time.time_ns())
-    known = kept.get("outcomes", {}) if kept.get("seed") == seed else {}
+    earlier = json.loads(given.results.read_text(encoding="utf-8")) if given.results.is_file() else {}
+    seed = given.seed or earlier.get("seed") or str(time.time_ns())
+    known = earlier.get("outcomes", {}) if earlier.get("seed") == seed else {}
     print(f"seed {seed}, {given.count} mutants of {len(functions())} functions")
     mutants = {each: (each.digest(tests=False), each.digest(tests=True)) for each in islice(draw(seed), given.count)}
     outcomes = {}

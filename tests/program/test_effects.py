@@ -106,20 +106,20 @@ def spherical_scene(called):
     return described + scene
 
 
-def system_text(name, kept):
-    """A system with only the kept effects written down, and what they hold declared."""
+def system_text(name, chosen):
+    """A system with only the chosen effects written down, and what they contain declared."""
     described = SYSTEMS[name]
 
     def entry_text(entry):
-        return ", ".join(f"{effect} = {value}" for effect, value in described[entry] if effect in kept)
+        return ", ".join(f"{effect} = {value}" for effect, value in described[entry] if effect in chosen)
 
     parts = {entry: entry_text(entry) for entry in ("kinetic", "potential", "forces")}
-    held = set(re.findall(r"\w+", " ".join([*parts.values(), described["constraint"]])))
+    contained = set(re.findall(r"\w+", " ".join([*parts.values(), described["constraint"]])))
     return SYSTEM.format(
         coordinates=described["coordinates"],
         constraint=described["constraint"],
-        controls=", ".join(held & {"u"}),
-        parameters=", ".join(sorted(held & set(VALUES))),
+        controls=", ".join(contained & {"u"}),
+        parameters=", ".join(sorted(contained & set(VALUES))),
         **parts,
     )
 
@@ -185,14 +185,14 @@ LEFT_OUT = [
 
 @pytest.mark.parametrize(("name", "left_out"), LEFT_OUT)
 def test_leaving_an_effect_out_is_as_if_it_were_not_written(name, left_out, write_scene):
-    kept = [effect for effect in effects_of(name) if effect != left_out]
+    remaining = [effect for effect in effects_of(name) if effect != left_out]
     whole = system_text(name, effects_of(name))
-    chosen = write_scene(whole + scene_text(name, listed(kept), whole))
-    assert_same_assignments(MotionProgram(chosen, Request(), Limits()).document, name, kept, write_scene)
+    chosen = write_scene(whole + scene_text(name, listed(remaining), whole))
+    assert_same_assignments(MotionProgram(chosen, Request(), Limits()).document, name, remaining, write_scene)
 
 
-def assert_same_assignments(chosen, name, kept, write_scene):
-    part = system_text(name, kept)
+def assert_same_assignments(chosen, name, effects, write_scene):
+    part = system_text(name, effects)
     written = MotionProgram(write_scene(part + scene_text(name, "all", part)), Request(), Limits()).document
     chosen, written = json.loads(chosen), json.loads(written)
     uncalled = set(chosen["inputs"]) - set(written["inputs"])  # of a control that only the effects left out contain

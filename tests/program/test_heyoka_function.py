@@ -67,7 +67,7 @@ def test_a_missing_extra_is_one_sentence_that_names_it(monkeypatch):
         heyoka_function(PENDULUM)
 
 
-def test_machine_code_was_kept_in_the_home_directory_and_run_from_there(tmp_path):
+def test_machine_code_is_not_written_to_the_home_directory(tmp_path):
     compiling = "from holonom.program.heyoka_function import import_heyoka; heyoka = import_heyoka(); "
     compiling += "x = heyoka.expression('x'); heyoka.cfunc([heyoka.sin(x)], vars=[x])"
     home = os.environ | {"HOME": str(tmp_path), "XDG_CACHE_HOME": str(tmp_path / "cache")}

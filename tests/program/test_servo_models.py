@@ -30,7 +30,7 @@ def test_the_torques_that_are_found_are_no_inputs(arm: Model):
 
 
 def test_the_torques_are_those_of_inverse_dynamics(arm: Model):
-    """The tip's acceleration is that of the circle; the multipliers of the course are zero."""
+    """The tip's acceleration is that of the circle; the multipliers of the path are zero."""
     inputs = {"t": 0.7, "a": -0.9, "b": 0.8, "dot(a)": 0.3, "dot(b)": -0.2, "m": 1.5}
     values = [inputs[name] for name in arm.motion.inputs]
     motion = dict(zip(arm.motion.outputs, NumpyFunction(arm.motion)(values), strict=True))

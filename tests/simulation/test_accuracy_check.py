@@ -11,15 +11,15 @@ from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
 from holonom.simulation.accuracy_check import expected, may_hide, trusted, violations
 
-KEPT = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
+EXPECTED = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 
 
 def test_the_errors_of_a_motion_that_was_followed_are_in_proportion():
-    assert not list(violations(KEPT, 1e-16, 500))
+    assert not list(violations(EXPECTED, 1e-16, 500))
 
 
 def test_a_position_residual_of_0_04_and_an_energy_error_of_13_were_passed_over():
-    found = list(violations({**KEPT, "position": 0.04, "energy": 13.0 / 40.0}, 1e-16, 100))
+    found = list(violations({**EXPECTED, "position": 0.04, "energy": 13.0 / 40.0}, 1e-16, 100))
     assert [violation.quantity for violation in found] == ["position", "energy"]
     assert found[1].error == 13.0 / 40.0
 
@@ -34,7 +34,7 @@ def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, 
 
 
 def test_what_is_no_number_is_no_result():
-    assert [violation.quantity for violation in violations({**KEPT, "energy": math.nan}, 1e-3, 10)] == ["energy"]
+    assert [violation.quantity for violation in violations({**EXPECTED, "energy": math.nan}, 1e-3, 10)] == ["energy"]
 
 
 WELL = """

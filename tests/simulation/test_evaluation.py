@@ -86,7 +86,7 @@ def test_projection_moves_to_the_nearest_state_and_tells_the_way(problem, states
         assert moved == pytest.approx(distance(point[1:], found, nominal_of(problem).state), rel=1e-12)
 
 
-def test_what_is_kept_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path):
+def test_a_function_cached_for_all_values_of_a_parameter_is_compiled_at_once(tmp_path):
     """Else the last digits of a motion would depend on how many were integrated before."""
     file = tmp_path / "oscillator.mac"
     file.write_text(

@@ -1,4 +1,4 @@
-"""Controls in constraints that hold outputs to a course: closed forms, Newton and Euler, planted motions."""
+"""Controls in constraints that hold outputs to a path: closed forms, Newton and Euler, planted motions."""
 
 import random
 from pathlib import Path
@@ -20,16 +20,16 @@ T = sp.Symbol("t")
 BOB = """
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y], constraints = [x^2 + y^2 - u^2])$
-led : holonomic_scene(system, servo_constraints = [y = {course}], parameter_values = [m = 2, g = 10],
+led : holonomic_scene(system, servo_constraints = [y = {path}], parameter_values = [m = 2, g = 10],
   initial_state = [x = 1, dot(x) = {speed}], initial_guess = [y = -2, dot(y) = 0, u = 2, dot(u) = 0],
   time_span = [0, 2], observe = [trajectory, controls, multipliers, pull = -2*lambda1*u, energy, residuals])$
 """
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-def test_bob_kept_level_swings_as_a_harmonic_oscillator(engine, c_compiler):
+def test_level_bob_swings_as_a_harmonic_oscillator(engine, c_compiler):
     """Only the upright part of the pull holds the weight: ddot(x) = -(g/h) x and lambda = -m g/(2 h)."""
-    motion = holonom.system(BOB.format(course="-2", speed=0)).simulate(samples=9, engine=engine)
+    motion = holonom.system(BOB.format(path="-2", speed=0)).simulate(samples=9, engine=engine)
     x = sp.cos(sp.sqrt(5) * T)
     u = sp.sqrt(x**2 + 4)
     truth = values([x, u, sp.diff(u, T), sp.diff(u, T, 2), -5 + 0 * T, 10 * u], motion.times)
@@ -42,7 +42,7 @@ def test_bob_kept_level_swings_as_a_harmonic_oscillator(engine, c_compiler):
 @pytest.mark.parametrize("mass", [10**9, 10**-9])
 def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
     """The second rate is the difference of the drive and the reaction, which a unit mass made one of large numbers."""
-    motion = holonom.system(BOB.format(course="-2", speed=0).replace("m = 2", f"m = {mass:.1e}")).simulate(samples=5)
+    motion = holonom.system(BOB.format(path="-2", speed=0).replace("m = 2", f"m = {mass:.1e}")).simulate(samples=5)
     u = sp.sqrt(sp.cos(sp.sqrt(5) * T) ** 2 + 4)
     truth = values([u, sp.diff(u, T, 2), -5 * mass / 2 + 0 * T], motion.times)
     assert np.array([motion[name] for name in ("u", "ddot(u)", "lambda1")]) == pytest.approx(
@@ -51,8 +51,8 @@ def test_rates_of_the_winch_keep_their_digits_with_any_load(mass):
 
 
 @pytest.mark.long
-def test_course_of_a_thrown_bob_makes_the_motion_free():
-    scene = holonom.system(BOB.format(course="-2 - 5*t^2", speed=3))
+def test_path_of_a_thrown_bob_makes_the_motion_free():
+    scene = holonom.system(BOB.format(path="-2 - 5*t^2", speed=3))
     motion = scene.simulate(samples=5)
     assert motion["x"] == pytest.approx(1 + 3 * motion.times, rel=1e-14)
     assert motion["lambda1"] == pytest.approx(0, abs=1e-14)
@@ -84,9 +84,9 @@ def platform(times):
     """Lengths and pushes of the legs, shape (6, k) each, by inverse kinematics, and by Newton and Euler."""
     place = [sp.sin(T) / 5, (1 - sp.cos(T)) / 5, 1 + sp.sin(2 * T) / 10]
     turn = [sp.sin(T) / 10, (1 - sp.cos(T)) / 20, sp.sin(2 * T) / 10]
-    course = [*place, sp.sqrt(1 - sum(e**2 for e in turn)), *turn]
+    path = [*place, sp.sqrt(1 - sum(e**2 for e in turn)), *turn]
     lengths, pushes = [], []
-    for q, v, a in zip(*(values([sp.diff(f, T, k) for f in course], times).T for k in range(3)), strict=True):
+    for q, v, a in zip(*(values([sp.diff(f, T, k) for f in path], times).T for k in range(3)), strict=True):
         e0, e1, e2, e3 = q[3:]
         cross = np.array([[0, -e3, e2], [e3, 0, -e1], [-e2, e1, 0]])
         rotation = np.eye(3) + 2 * e0 * cross + 2 * cross @ cross
@@ -140,13 +140,13 @@ def test_reaction_force_and_length_are_found_together():
     assert motion["u2"] == pytest.approx(np.hypot(motion["x"], motion["y"] - motion["w"]), rel=1e-13)
     assert motion["F"] == pytest.approx(-2 * np.sin(t) + 2 * (np.sin(t) - motion["x"]), abs=1e-12)
     assert {"F", "w", "ddot(u2)"} == set(motion.report.controls)
-    alone = BOB.replace("x^2 + y^2 - u^2", "y - u").format(course="-2", speed=0)  # another system, for its free fall
+    alone = BOB.replace("x^2 + y^2 - u^2", "y - u").format(path="-2", speed=0)  # another system, for its free fall
     assert holonom.system(alone).simulate(samples=2)["x"] == pytest.approx([1, 1], rel=1e-14)
     assert motion.report.trusted
 
 
-def test_load_on_a_spring_takes_a_course_of_relative_degree_four():
-    """h = u, and m ddot(x) = k (h - x - 1) - m g: the winch must know two rates more of the course."""
+def test_load_on_a_spring_takes_a_path_of_relative_degree_four():
+    """h = u, and m ddot(x) = k (h - x - 1) - m g: the winch must know two rates more of the path."""
     motion = holonom.system("""
 system : holonomic_system(coordinates = [h, x], controls = [u], parameters = [m, k, g],
   kinetic_energy = m*dot(x)^2/2 + dot(h)^2/2, potential_energy = [gravity = g*(m*x + h), spring = k*(h - x - 1)^2/2],
@@ -167,7 +167,7 @@ led : holonomic_scene(system, servo_constraints = [x = sin(t)], parameter_values
 SLIDE = """
 system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2,
   constraints = [x - {position}])$
-led : holonomic_scene(system, servo_constraints = [x = {course}], initial_state = [{start}],
+led : holonomic_scene(system, servo_constraints = [x = {path}], initial_state = [{start}],
   initial_guess = [{guess}], time_span = [0, 3])$
 """
 GUESS = "x = 1/2, u = 1/2, dot(x) = 0, dot(u) = 0"
@@ -175,10 +175,10 @@ GUESS = "x = 1/2, u = 1/2, dot(x) = 0, dot(u) = 0"
 
 @pytest.mark.long
 @pytest.mark.parametrize("engine", ["auto", "robust"])
-@pytest.mark.parametrize(("course", "end"), [("cos(t - 1)", 1), ("1/2 + t/4", 2)])
-def test_motion_ends_at_a_dead_centre_with_its_time(course, end, engine):
-    """x = sin(u): at u = pi/2 the control does not move x, even if the course passes there smoothly."""
-    scene = holonom.system(SLIDE.format(position="sin(u)", course=course, start="", guess=GUESS))
+@pytest.mark.parametrize(("path", "end"), [("cos(t - 1)", 1), ("1/2 + t/4", 2)])
+def test_motion_ends_at_a_dead_centre_with_its_time(path, end, engine):
+    """x = sin(u): at u = pi/2 the control does not move x, even if the path passes there smoothly."""
+    scene = holonom.system(SLIDE.format(position="sin(u)", path=path, start="", guess=GUESS))
     with pytest.raises(HolonomError) as ended:
         scene.simulate(samples=3, engine=engine)
     assert ended.value.kind is ErrorKind.NO_WAY_ON
@@ -186,9 +186,9 @@ def test_motion_ends_at_a_dead_centre_with_its_time(course, end, engine):
 
 
 @pytest.mark.parametrize("friction", [3, 30])
-def test_friction_holds_the_load_that_is_kept_level(friction):
+def test_friction_acts_on_the_level_load(friction):
     """Its sign changes the drive of the winch, too. From x = 1 the pull -10 x may be less than the friction."""
-    text = BOB.format(course="-2", speed=1).replace(
+    text = BOB.format(path="-2", speed=1).replace(
         " constraints", f" forces = [-{friction}*signum(dot(x)), 0], constraints"
     )
     motion = holonom.system(text).simulate(samples=9)
@@ -204,22 +204,22 @@ def test_friction_holds_the_load_that_is_kept_level(friction):
 
 def test_start_at_a_dead_centre_is_refused():
     scene = holonom.system(
-        SLIDE.format(position="u^3", course="t^3", start="x = 0, u = 0, dot(u) = 0", guess="dot(x) = 0")
+        SLIDE.format(position="u^3", path="t^3", start="x = 0, u = 0, dot(u) = 0", guess="dot(x) = 0")
     )
     with refused("servo_rank_at_start"):
         scene.simulate(samples=2)
 
 
-@pytest.mark.parametrize(("course", "x"), [("-1 - t^2", "0"), ("-3/5 - t", "4/5")])
-def test_start_at_a_double_root_of_the_control_is_refused(course, x):
+@pytest.mark.parametrize(("path", "x"), [("-1 - t^2", "0"), ("-3/5 - t", "4/5")])
+def test_start_at_a_double_root_of_the_control_is_refused(path, x):
     """x^2 + y^2 = 1 + u^2: Newton's method finds u = 0 to half the digits."""
-    text = BOB.replace("- u^2", "- u^2 - 1").replace("x = 1", f"x = {x}").format(course=course, speed=0)
+    text = BOB.replace("- u^2", "- u^2 - 1").replace("x = 1", f"x = {x}").format(path=path, speed=0)
     with refused("servo_rank_at_start"):
         holonom.system(text).simulate(samples=2)
 
 
 REFUSED = {
-    "a course of relative degree three": (
+    "a path of relative degree three": (
         BOB.replace("forces", "").replace(
             "constraints = [x^2 + y^2 - u^2]", "forces = [0, dot(x)], constraints = [x - u]"
         ),
@@ -244,7 +244,7 @@ REFUSED = {
 def test_what_no_control_can_follow_is_refused(what):
     text, refusal = REFUSED[what]
     with refused(refusal):
-        holonom.system(text.format(course="t^3", speed=0)).simulate(samples=2)
+        holonom.system(text.format(path="t^3", speed=0)).simulate(samples=2)
 
 
 @pytest.mark.parametrize(
@@ -257,13 +257,13 @@ def test_what_no_control_can_follow_is_refused(what):
 )
 def test_what_takes_the_controls_as_given_is_refused(asked, kind):
     with pytest.raises(HolonomError) as refused:
-        asked(holonom.system(BOB.format(course="-2", speed=0)))
+        asked(holonom.system(BOB.format(path="-2", speed=0)))
     assert refused.value.kind is kind
 
 
 def test_sweep_keeps_the_second_rate_of_the_control():
     rows = holonom.sweep(
-        holonom.system(BOB.format(course="-2", speed=0)), values={"g": [10, 20]}, keep=["ddot(u)", "max(abs(lambda1))"]
+        holonom.system(BOB.format(path="-2", speed=0)), values={"g": [10, 20]}, keep=["ddot(u)", "max(abs(lambda1))"]
     ).to_pandas()
     assert list(rows["max(abs(lambda1))"]) == pytest.approx([5, 10], rel=1e-12)
     x = sp.cos(sp.sqrt(5) * T)
@@ -293,13 +293,16 @@ def planted(seed):
     ]
     potential = number() * q[0] * q[1] + number() * q[2] ** 2 + number() * q[0] * u[0]
 
-    def held():
+    def random_constraint():
         inner = sum(
             (number() * s for s in (*q, *u)), number() * q[0] * u[1] + number() * sp.sin(q[1]) + number() * u[0] * T
         )
         return inner - inner.subs(motion)
 
-    constraints, outputs = [held(), held()], [q[0] * q[1] + number() * q[2], number() * q[0] - q[2]]
+    constraints, outputs = (
+        [random_constraint(), random_constraint()],
+        [q[0] * q[1] + number() * q[2], number() * q[0] - q[2]],
+    )
     outputs = [s - s.subs(motion) for s in outputs]
     rates = {rate: sp.diff(motion[each], T) for rate, each in zip(v, q, strict=True)}
     along = {**motion, **rates}

@@ -95,7 +95,7 @@ def test_sleeve_on_a_shaft_swings_by_its_measured_angle_and_falls():
     np.testing.assert_allclose(motion["e3"], np.sin(motion["theta"] / 2), atol=1e-11)
 
 
-def test_motor_turns_by_the_course_and_its_moment_is_the_multiplier():
+def test_motor_turns_by_the_path_and_its_moment_is_the_multiplier():
     motion = simulated(MOTOR)
     np.testing.assert_allclose(motion["e0"], np.cos(motion["t"] ** 2 / 2), atol=1e-12)
     np.testing.assert_allclose(np.abs(motion["lambda1"]), (3 + 2 * 1) * 2, atol=1e-10)

@@ -1,4 +1,4 @@
-"""Controls in forces that hold outputs to a course, against inverse dynamics, flatness and conservation laws."""
+"""Controls in forces that hold outputs to a path, against inverse dynamics, flatness and conservation laws."""
 
 import json
 import re
@@ -68,7 +68,7 @@ system : holonomic_system(coordinates = [x, l, phi], controls = [F, W], paramete
   kinetic_energy = M*dot(x)^2/2 + m*((dot(x) + dot(l)*sin(phi) + l*cos(phi)*dot(phi))^2
     + (dot(l)*cos(phi) - l*sin(phi)*dot(phi))^2)/2,
   potential_energy = [gravity = -m*g*l*cos(phi)], forces = [drives = [F, W, 0]])$
-carried : holonomic_scene(system, servo_constraints = [{course}], parameter_values = [M = 2, m = 1, g = 981/100],
+carried : holonomic_scene(system, servo_constraints = [{path}], parameter_values = [M = 2, m = 1, g = 981/100],
   initial_state = [], initial_guess = [x = 0, l = 2, phi = {phi}, dot(x) = 0, dot(l) = 0, dot(phi) = 0],
   time_span = [0, 1])$
 """
@@ -98,7 +98,7 @@ def test_a_crane_whose_load_follows_a_line_is_flat(engine, c_compiler):
     assert found == pytest.approx(truth, rel=ENGINES[engine], abs=ENGINES[engine])
 
 
-COURSES = {
+PATHS = {
     "from rest, under a rope that hangs straight": ("hook[1] = t^5, hook[2] = -2", 0, T**5, 2 + 0 * T),
     "the outputs in the other order": (
         "hook[2] = t/5 - 2, hook[1] = (1 - cos(t))/2",
@@ -115,11 +115,11 @@ COURSES = {
 }
 
 
-@pytest.mark.parametrize("course", COURSES)
-def test_a_crane_was_refused(course):
+@pytest.mark.parametrize("path", PATHS)
+def test_a_crane_was_refused(path):
     """From rest, for one output that is not moved there; along a parabola, for velocities that the outputs fix."""
-    outputs, phi, across, below = COURSES[course]
-    motion = holonom.system(CRANE.format(course=outputs, phi=phi)).simulate(samples=5)
+    outputs, phi, across, below = PATHS[path]
+    motion = holonom.system(CRANE.format(path=outputs, phi=phi)).simulate(samples=5)
     found = np.array([motion[name] for name in ("x", "phi", "F", "W")])
     assert found == pytest.approx(values(flat_crane(across, below), motion.times), rel=1e-11, abs=1e-11)
     assert motion.report.trusted
@@ -128,11 +128,11 @@ def test_a_crane_was_refused(course):
 
 @pytest.mark.long
 def test_a_rope_that_would_have_to_push_ends_the_motion_in_one_sentence():
-    """It lies level where the course falls as a stone does, X'^2 + X X'' = -g/2; that was LinAlgError."""
-    course = "hook[1] = t^2*(3 - 2*t), hook[2] = hook[1]^2 - 3"
+    """It lies level where the path falls as a stone does, X'^2 + X X'' = -g/2; that was LinAlgError."""
+    path = "hook[1] = t^2*(3 - 2*t), hook[2] = hook[1]^2 - 3"
     across = T**2 * (3 - 2 * T)
     falls = float(sp.nsolve(2 * sp.diff(across, T) ** 2 + 2 * across * sp.diff(across, T, 2) + 9.81, T, 0.9))
-    scene = holonom.system(CRANE.format(course=course, phi=-0.5).replace("l = 2", "l = 3"))
+    scene = holonom.system(CRANE.format(path=path, phi=-0.5).replace("l = 2", "l = 3"))
     with pytest.raises(HolonomError) as ended:
         scene.simulate(samples=2, engine="taylor")
     assert float(re.search(r"t = ([\d.]+\d)", str(ended.value))[1]) == pytest.approx(falls, abs=1e-3)
@@ -198,7 +198,7 @@ def test_a_quadrotor_in_the_plane_is_flat_in_whatever_order_its_outputs_are_name
 TURNING = """
 system : holonomic_system(coordinates = [x, y{more}], controls = [u1, u2{sought}],
   kinetic_energy = (dot(x)^2 + dot(y)^2{energy})/2, forces = [thrust = [{forces}]])$
-flown : holonomic_scene(system, servo_constraints = [x = sin(t), y = cos(t){course}], initial_state = [],
+flown : holonomic_scene(system, servo_constraints = [x = sin(t), y = cos(t){path}], initial_state = [],
   time_span = [0, 2])$
 """
 
@@ -206,7 +206,7 @@ flown : holonomic_scene(system, servo_constraints = [x = sin(t), y = cos(t){cour
 @pytest.mark.parametrize("engine", ENGINES)
 def test_a_pivot_that_vanishes_on_the_way_made_the_controls_no_numbers(engine, c_compiler):
     """M = [[1 - t, -t], [t, 1 - t]] is regular throughout, and its first entry zero at t = 1."""
-    text = TURNING.format(more="", sought="", energy="", course="", forces="u1*(1 - t) - u2*t, u1*t + u2*(1 - t)")
+    text = TURNING.format(more="", sought="", energy="", path="", forces="u1*(1 - t) - u2*t, u1*t + u2*(1 - t)")
     motion = holonom.system(text).simulate(samples=5, engine=engine)
     t = motion.times
     truth = [np.linalg.solve([[1 - at, -at], [at, 1 - at]], [-np.sin(at), -np.cos(at)]) for at in t]
@@ -220,7 +220,7 @@ def test_rows_of_any_size_and_outputs_that_one_control_moves_alone():
         more=", z",
         sought=", u3",
         energy=" + dot(z)^2",
-        course=", z = t^3",
+        path=", z = t^3",
         forces="u1*(1 - t) - u2*t + u3, 10^9*(u1*t + u2*(1 - t)), u3*(2 + t)",
     )
     motion = holonom.system(text).simulate(samples=5)
@@ -237,13 +237,13 @@ MASSES = """
 system : holonomic_system(coordinates = [x, y], controls = [u{more}], parameters = [m, n, k],
   kinetic_energy = (m*dot(x)^2 + n*dot(y)^2)/2, potential_energy = [spring = k*(x - y)^2/2],
   forces = [drive = [u, 0]{forces}]{entries})$
-led : holonomic_scene(system, servo_constraints = [{course}], parameter_values = [m = 2, n = 3, k = 5],
+led : holonomic_scene(system, servo_constraints = [{path}], parameter_values = [m = 2, n = 3, k = 5],
   {law}initial_state = [], time_span = [0, 2])$
 """
 
 
-def masses(course, more="", forces="", entries="", law=""):
-    return holonom.system(MASSES.format(course=course, more=more, forces=forces, entries=entries, law=law))
+def masses(path, more="", forces="", entries="", law=""):
+    return holonom.system(MASSES.format(path=path, more=more, forces=forces, entries=entries, law=law))
 
 
 def test_two_masses_and_a_spring_have_the_known_feedforward():
@@ -319,7 +319,7 @@ led : holonomic_scene(system, servo_constraints = [z = sin(2*t)], initial_state 
     assert motion["F"] == pytest.approx(20 * np.sin(2 * motion.times), abs=1e-13)
 
 
-def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
+def test_a_path_by_if_was_refused_for_a_function_that_no_program_has():
     """At rest, then y = (t - 1)^5: four rates are continuous, and so are all controls but one kink."""
     motion = masses("y = if t < 1 then 0 else (t - 1)^5").simulate(samples=9)
     s = np.maximum(np.asarray(motion.times) - 1, 0)
@@ -327,7 +327,7 @@ def test_a_course_by_if_was_refused_for_a_function_that_no_program_has():
     assert motion["x"] == pytest.approx(s**5 + 3 / 5 * 20 * s**3, abs=1e-13)
 
 
-def test_a_course_that_asks_for_third_rates_of_a_law_was_followed_without_them():
+def test_a_path_that_asks_for_third_rates_of_a_law_was_followed_without_them():
     """Relative degree 4, and w has two rates: dot(x) was given without the third, and the energy was lost."""
     with refused("servo_rates_of_controls"):
         masses("y = w", ", w", entries=", drawing = [point([w, 0])]", law="control_law = [w = sin(2*t)], ").simulate(
@@ -433,7 +433,7 @@ def test_what_no_control_can_do_is_refused(what):
         holonom.system(text.format(across="1 + cos(t)/4")).simulate(samples=2)
 
 
-def test_a_course_by_a_long_table_is_refused_before_the_work():
+def test_a_path_by_a_long_table_is_refused_before_the_work():
     """All polynomials of the table stand in the equations, and the motion meets each in equations of its own."""
     points = ", ".join(f"[{k}/100, {k % 7}]" for k in range(501))
     scene = holonom.system(ROD.replace("sin(2*t)/5", f"table([{points}])"))
@@ -444,7 +444,7 @@ def test_a_course_by_a_long_table_is_refused_before_the_work():
 WINCH = """
 system : holonomic_system(coordinates = [x, y, z], controls = [u, w], forces = [motor = [u, u, 0]],
   kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, constraints = [z - w])$
-driven : holonomic_scene(system, control_law = [w = {law}], servo_constraints = [x - {course}],
+driven : holonomic_scene(system, control_law = [w = {law}], servo_constraints = [x - {path}],
   initial_state = [y = 0, dot(y) = 0], time_span = [0, 2])$
 """
 
@@ -452,7 +452,7 @@ driven : holonomic_scene(system, control_law = [w = {law}], servo_constraints = 
 @pytest.mark.parametrize("law", ["1 + abs(t - 1)/4", "table([[0, 5/4], [1, 1], [2, 5/4]])"])
 def test_a_law_in_parts_beside_servo_constraints_was_an_error_of_lisp(law):
     """In closed form: u moves x and y alike, and the law moves z alone, whose reaction takes the impulse of a kink."""
-    motion = holonom.system(WINCH.format(law=law, course="sin(t)")).simulate(samples=5)
+    motion = holonom.system(WINCH.format(law=law, path="sin(t)")).simulate(samples=5)
     t = np.array(motion.times, dtype=float)
     assert motion["x"] == pytest.approx(np.sin(t), abs=1e-14)
     assert motion["y"] == pytest.approx(np.sin(t) - t, abs=1e-14)
@@ -460,11 +460,11 @@ def test_a_law_in_parts_beside_servo_constraints_was_an_error_of_lisp(law):
     assert motion.report.trusted
 
 
-@pytest.mark.parametrize("course", ["abs(t - 1)/4", "z"])
-def test_an_impulse_along_the_course_took_the_place_of_one_of_the_controls(course):
+@pytest.mark.parametrize("path", ["abs(t - 1)/4", "z"])
+def test_an_impulse_along_the_path_took_the_place_of_one_of_the_controls(path):
     """It left y at rest, which u moves as it moves x."""
     with failing(ErrorKind.NO_WAY_ON, "t = 1"):
-        holonom.system(WINCH.format(law="1 + abs(t - 1)/4", course=course)).simulate(samples=2)
+        holonom.system(WINCH.format(law="1 + abs(t - 1)/4", path=path)).simulate(samples=2)
 
 
 def test_what_takes_the_controls_as_given_is_refused():

@@ -379,7 +379,7 @@ def test_a_tolerance_is_met():
     ("tol", "precision"), [(1e-17, "double"), (1e-20, "extended"), (1e-40, "quadruple"), (2, "double")]
 )
 def test_a_tolerance_that_the_numbers_cannot_hold_is_refused(tol, precision):
-    with failing(ErrorKind.TOLERANCE_UNHELD):
+    with failing(ErrorKind.TOLERANCE_OUT_OF_RANGE):
         final(problem("paper/paper.mac"), tol=tol, precision=precision)
 
 
@@ -391,7 +391,7 @@ def test_a_length_that_goes_through_zero_stops_the_motion_there():
 
 
 def test_a_tolerance_that_the_robust_engine_cannot_hold_is_refused():
-    with failing(ErrorKind.TOLERANCE_UNHELD, "robust"):
+    with failing(ErrorKind.TOLERANCE_OUT_OF_RANGE, "robust"):
         final(problem("paper/paper.mac"), tol=1e-15, engine=EngineName.ROBUST)
 
 

@@ -91,7 +91,7 @@ def test_samples_and_figures_are_written(tmp_path, simulate):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--tol", "1e-30"], message_of(ErrorKind.TOLERANCE_UNHELD, "1e-30")),
+        (["--tol", "1e-30"], message_of(ErrorKind.TOLERANCE_OUT_OF_RANGE, "1e-30")),
         (["--until", "-1"], message_of(ErrorKind.NOT_AFTER_START)),
         (["--precision", "single"], message_of(ErrorKind.NOT_A_PRECISION, "single")),
         (["-o", "motion.xls"], message_of(ErrorKind.NO_SUCH_FORMAT, ".csv, .npz, .parquet")),

@@ -1,4 +1,4 @@
-"""Samples that are written as they come: the same ones as are kept, in the memory of a few of them."""
+"""Samples that are written as they come: equal to those in memory, in the memory of a few of them."""
 
 import subprocess
 import sys

@@ -122,7 +122,7 @@ scene : holonomic_scene(system, control_law = [u = 1 + t/4 + e*(1 + sin(3*t))], 
 scene : holonomic_scene(system, control_law = [u = t^2/3 + e*cos(t), w = 1 + e*t], time_span = [0, 2],
   initial_state = [phi = 1/2 + e, x = 2, dot(phi) = -1, dot(x) = e/2], initial_guess = [y = 2, dot(y) = 0])$
 """,
-    "winch and force that keep a course": """system : holonomic_system(coordinates = [x, y, z], controls = [u, F, w],
+    "winch and force that keep a path": """system : holonomic_system(coordinates = [x, y, z], controls = [u, F, w],
   parameters = [e], kinetic_energy = (1 + z^2/4)*dot(x)^2 + dot(y)^2 + dot(z)^2/2,
   potential_energy = [gravity = 20*y, spring = (z - x)^2], forces = [drive = [F*z/5, F/7, F]],
   constraints = [x^2 + (y - w)^2 - u^2])$
@@ -131,7 +131,7 @@ scene : holonomic_scene(system, servo_constraints = [y = -2 + t/10, z = x/3 + si
   initial_guess = [y = -2, u = 2, z = 0, dot(z) = 1, dot(y) = 0, dot(u) = 0],
   observe = [trajectory, controls, multipliers, pull = -2*u*lambda1 + F*dot(z)])$
 """,
-    "course of relative degree four": """system : holonomic_system(coordinates = [h, x, z], controls = [u, w],
+    "path of relative degree four": """system : holonomic_system(coordinates = [h, x, z], controls = [u, w],
   parameters = [e], kinetic_energy = dot(h)^2/2 + dot(x)^2 + dot(z)^2*(1 + z^2)/2,
   potential_energy = [gravity = 10*h + 20*x, spring = 25*(h - x - 1)^2 + 10*(z - x)^2], constraints = [h - u - w])$
 scene : holonomic_scene(system, servo_constraints = [x = sin(t)], control_law = [w = t/5 + e*cos(t)],
@@ -165,8 +165,8 @@ def cosine(t):
 LAWS = {  # by e: of u, dot(u) and ddot(u), a row for each control
     "pendulum": lambda t: [[1 + np.sin(3 * t)], [3 * np.cos(3 * t)], [-9 * np.sin(3 * t)]],
     "two bars": lambda t: [[np.cos(t), t], [-np.sin(t), 1], [-np.cos(t), 0]],
-    "winch and force that keep a course": cosine,
-    "course of relative degree four": cosine,
+    "winch and force that keep a path": cosine,
+    "path of relative degree four": cosine,
     "prescribed tension": cosine,
     "table": lambda t: np.insert(cosine(t), 0, 0, axis=1),
     "law in parts": lambda t: np.insert(cosine(t), 0, 0, axis=1),

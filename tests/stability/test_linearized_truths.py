@@ -170,8 +170,8 @@ def by_sympy(system, start, accelerations, multipliers):
         point.set_vel(frame, v[k] * frame.x)
         forces.append((point, read(text) * frame.x))
     lagrangian = read(system.kinetic) - read(system.potential)
-    held = {"hol_coneqs": list(map(read, system.constraints))} if system.constraints else {}
-    method = LagrangesMethod(lagrangian, q, forcelist=forces, frame=frame, **held)
+    holonomic = {"hol_coneqs": list(map(read, system.constraints))} if system.constraints else {}
+    method = LagrangesMethod(lagrangian, q, forcelist=forces, frame=frame, **holonomic)
     method.form_lagranges_equations()
     free = [name for name in names if name in system.start]
     split = {

@@ -309,13 +309,13 @@ def test_parameters_may_have_names_that_the_library_uses(rows_of, scenes):
     decay, w = t0 / (2 * q), np.sqrt(stiffness / q - (t0 / (2 * q)) ** 2)
     truth = np.exp(-2 * decay) * (np.cos(2 * w) + decay / w * np.sin(2 * w))
     assert found["x"] == pytest.approx(truth, rel=1e-11)
-    with failing(ErrorKind.NOT_KEPT, "row"):
+    with failing(ErrorKind.NOT_AN_OUTPUT, "row"):
         rows_of(scenes / "names.mac", "x", "row=0:1:2")
 
 
 @pytest.mark.parametrize("item", ["at(x,4)", "at(x,-1)"])
 def test_an_time_outside_of_the_motion_is_refused(rows_of, scenes, item):
-    with failing(ErrorKind.NOT_KEPT, item):
+    with failing(ErrorKind.NOT_AN_OUTPUT, item):
         rows_of(scenes / "oscillator.mac", item, "k=4:25:22", "m=1:4:4")
 
 
@@ -344,7 +344,7 @@ def test_without_projection_the_constraints_drift(rows_of):
 
 
 def test_a_quantity_that_the_motion_does_not_have_is_refused(rows_of):
-    with failing(ErrorKind.NOT_KEPT, "lambda2"):
+    with failing(ErrorKind.NOT_AN_OUTPUT, "lambda2"):
         rows_of("crane.mac", "max(lambda2)", "m=50:500:3")
 
 
@@ -368,7 +368,7 @@ fall : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x = 
 
 
 @pytest.mark.long
-def test_outputs_of_the_scene_are_kept_in_batches_and_singly(rows_of, scenes):
+def test_outputs_of_the_scene_are_recorded_in_batches_and_singly(rows_of, scenes):
     """The tension of a pendulum of length 1 is m v^2 - m g y; friction, followed singly, brakes with mu to the stop."""
     file = scenes / "observed.mac"
     file.write_text(HANGING.replace("[0, 2])", "[0, 2], observe = [trajectory, pull = -2*lambda1*u, side = abs(x)])"))
@@ -382,5 +382,5 @@ def test_outputs_of_the_scene_are_kept_in_batches_and_singly(rows_of, scenes):
     braked = columns(rows_of(scenes / "braking.mac", "at(F,1/4),min(F)", "mu=1:2:2").table(0, 2))
     assert braked["at(F,1/4)"] == pytest.approx([-1, -2])
     assert braked["min(F)"] == pytest.approx([-1, -2])
-    with failing(ErrorKind.NOT_KEPT, "side"):
+    with failing(ErrorKind.NOT_AN_OUTPUT, "side"):
         rows_of(file, "max(side)", "m=1:3:3")

@@ -168,15 +168,15 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, part):
     [
         (("--keep", "final"), message_of(ErrorKind.NOTHING_VARIES)),
         (("--grid", "m=1:2"), message_of(ErrorKind.NOT_AN_AXIS)),
-        (("--grid", "m=1:2:3", "--keep", "x.y"), message_of(ErrorKind.NOT_KEPT, "x.y")),
-        (("--grid", "m=1:2:3", "--tol", "7"), message_of(ErrorKind.TOLERANCE_UNHELD)),
+        (("--grid", "m=1:2:3", "--keep", "x.y"), message_of(ErrorKind.NOT_AN_OUTPUT, "x.y")),
+        (("--grid", "m=1:2:3", "--tol", "7"), message_of(ErrorKind.TOLERANCE_OUT_OF_RANGE)),
         (
             ("--grid", "m=1:2:3", "--grid", "c=1:2:3", "--grid", "g=1:2:3", "--plot", "p.svg"),
             message_of(ErrorKind.NOT_PLOTTED),
         ),
         (("--grid", "m=1:2:3", "--resume"), message_of(ErrorKind.NOTHING_TO_RESUME)),
         (("--grid", "nothing=1:2:3"), message_of(ErrorKind.NOT_SETTABLE, "nothing")),
-        (("--grid", "m=1:2:3", "--keep", "lambda7"), message_of(ErrorKind.NOT_KEPT, "lambda7")),
+        (("--grid", "m=1:2:3", "--keep", "lambda7"), message_of(ErrorKind.NOT_AN_OUTPUT, "lambda7")),
         *(
             (("--grid", "m=1:2:3", "--dask", address), message_of(ErrorKind.NOT_A_SCHEDULER))
             for address in ("", "nowhere", "file:///etc/passwd", "tcp://a b:1", "inproc://x", "127.0.0.1:99999")

@@ -1,4 +1,4 @@
-"""What is kept: items of a small language, which nothing runs as code."""
+"""Outputs of a sweep: items of a small language, which nothing runs as code."""
 
 from fractions import Fraction
 
@@ -49,7 +49,7 @@ def test_an_expression_has_the_precedence_of_maxima():
         "1e999",
     ],
 )
-def test_what_cannot_be_kept_is_refused(item):
+def test_an_unknown_output_is_an_error(item):
     with pytest.raises(HolonomError) as refused:
         read_quantities([item])
-    assert refused.value.kind is ErrorKind.NOT_KEPT
+    assert refused.value.kind is ErrorKind.NOT_AN_OUTPUT

@@ -135,7 +135,7 @@ def test_what_no_record_holds_is_refused():
 
 
 @pytest.mark.parametrize("width", [70, 40])
-def test_sums_are_broken_before_signs_and_kept_to_the_width(width):
+def test_sums_are_broken_before_signs_within_the_width(width):
     long = sum(Symbol(f"x{i}", real=True) * Symbol(f"y{j}", real=True) for i in range(1, 6) for j in range(1, 6))
     rows = latex(long, width).splitlines()[1:-1]
     assert len(rows) > 2

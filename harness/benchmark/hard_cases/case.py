@@ -106,7 +106,7 @@ def examined(case: Case, extent: Extent) -> CaseReport:
 
 
 def holonom_result(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method of Holonom's, which has to keep a number of digits.
+    """Return a method of Holonom's, with its required number of correct digits.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def holonom_result(method: str, quantity: str, digits: float, needed: float) -> 
     digits : float
         Correct decimal digits, from 0 to 16.
     needed : float
-        Digits that the method has to keep.
+        Required number of correct digits.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def holonom_result(method: str, quantity: str, digits: float, needed: float) -> 
 
 
 def reference_result(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method for comparison, which may keep fewer.
+    """Return a method for comparison, which may have fewer.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def reference_result(method: str, quantity: str, digits: float, needed: float) -
     digits : float
         Correct decimal digits, from 0 to 16.
     needed : float
-        Digits that a method of Holonom has to keep.
+        Number of correct digits required of a method of Holonom.
 
     Returns
     -------

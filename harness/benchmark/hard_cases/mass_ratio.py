@@ -52,7 +52,7 @@ def mass_ratio(extent: Extent) -> Findings:
 
 
 def _worst(solve: SolveAt) -> float:
-    """Fewest digits that a solve keeps of the accelerations, over states of the chain."""
+    """Fewest correct digits of the accelerations by a solve, over states of the chain."""
     states = [hanging(*at) for at in product(DIRECTIONS, BENDS)]
     return min(correct_digits(solve(0.0, state).accelerations, certified_accelerations(state)) for state in states)
 

@@ -59,7 +59,7 @@ def problem(file: str, scene: str | None = None, solve: Solve = Solve.DIRECT) ->
     Returns
     -------
     MotionProblem
-        The motion, kept for later calls.
+        The motion, cached for later calls.
     """
     return motion_problem(EXAMPLES / file, Request(scene, solve), Limits())
 
@@ -120,7 +120,7 @@ def place_digits(
     truth : sequence of mpf
         True values of the first coordinates.
     needed : float
-        Digits that Holonom has to keep.
+        Number of correct digits required of Holonom.
     scale : float or None
         Size to which errors are relative, or None for the largest true value.
 

@@ -68,7 +68,7 @@ def solve_digits(
     digits : mapping of str to float
         Correct digits of each solve, by its name.
     needed : float
-        Digits that a solve has to keep.
+        Required number of correct digits.
     compared : tuple of str
         Names of the solves for comparison.
 

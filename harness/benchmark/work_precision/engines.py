@@ -156,7 +156,7 @@ def prepare_taylor(
     tol : float
         Tolerance of a step.
     stabilization : Stabilization
-        How the state is kept on the constraints.
+        How the constraints are satisfied: by projection or a stabilization.
 
     Returns
     -------

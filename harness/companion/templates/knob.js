@@ -66,13 +66,13 @@ const knob = (() => {
     };
     const start = [...places, ...rates].map(name => settings[name] ?? 0), last = places.length;
     for (const [place, residual] of [[last - 1, "residual[1]"], [2*last - 1, "residual_rate[1]"]]) {
-      const kept = run(constraints, known(0, start));
-      start[place] -= kept[residual]/kept[`J[1,${last}]`];
+      const found = run(constraints, known(0, start));
+      start[place] -= found[residual]/found[`J[1,${last}]`];
     }
     const times = Array.from({length: samples}, (_, k) => until*k/(samples - 1));
     const seen = states(rate, times, start).map((y, k) => {
-      const values = known(times[k], y), kept = run(constraints, values), lambda = run(motion, values).lambda1;
-      const power = lambda*sum(rates.map((name, i) => (kept[`J[1,${i + 1}]`] ?? 0)*values[name]));
+      const values = known(times[k], y), found = run(constraints, values), lambda = run(motion, values).lambda1;
+      const power = lambda*sum(rates.map((name, i) => (found[`J[1,${i + 1}]`] ?? 0)*values[name]));
       return {...values, lambda1: lambda, power};
     });
     return {times, seen};

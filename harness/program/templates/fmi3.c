@@ -11,7 +11,7 @@
        FOUND        controls that servo-constraints find
        OBSERVED     outputs that the scene names
 
-   What lies before STORED is held; the rest is computed when it is asked for, once for each state.    */
+   What lies before STORED is given. The rest is computed on request, once for each state.    */
 
 #include <stdbool.h>
 #include <stddef.h>

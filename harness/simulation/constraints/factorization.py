@@ -1,7 +1,7 @@
 """Factorization of A a - J^T lambda = h and J a = -c at a state, with pivots.
 
 Bad scales of masses and constraints, and dependent constraints, are allowed. G = J A^-1 J^T is never formed: near a
-singular configuration the accelerations keep about half of the digits that it would lose.
+singular configuration the accelerations retain about half of the digits that it would lose.
 
 If all constraints count as independent, the equations are one sparse system. With S the inverse roots of the masses on
 A's diagonal, D the scale that brings the rows of J S to length one, and a small alpha,

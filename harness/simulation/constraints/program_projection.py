@@ -34,7 +34,7 @@ class ProgramProjection:
         return self._problem.once(("projection", self._precision.name), self._problem.projection, build)
 
     def project(self, time: Any, state: Numbers) -> float:
-        """Move a state, in place, to the nearest one that keeps the constraints.
+        """Move a state, in place, to the nearest one that satisfies the constraints.
 
         Parameters
         ----------
@@ -94,7 +94,7 @@ def nearest_state(problem: MotionProblem, precision: Precision, **options: Any) 
     Returns
     -------
     heyoka.cfunc
-        From t, the state and what is open to the nearest state that keeps the constraints.
+        From t, the state and what is open to the nearest state that satisfies the constraints.
     """
     heyoka = import_heyoka()
     variables = {name: heyoka.expression(name) for name in ("t", *problem.state, *problem.open_inputs)}

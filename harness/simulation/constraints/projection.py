@@ -37,7 +37,7 @@ class InconsistentConstraints(HolonomError):
 def settle(
     matrices: MotionMatrices, t: float | Vector, state: Vector, rank: int | None = None
 ) -> tuple[Vector, FactoredConstraints]:
-    """Return the nearest state that keeps the constraints, and their factors there.
+    """Return the nearest state on the constraints, and their factors there.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def settle(
     Raises
     ------
     InconsistentConstraints
-        No state keeps them, or Newton's method finds none.
+        No state satisfies them, or Newton's method finds none.
     HolonomError
         The equations of motion are not finite there.
     """

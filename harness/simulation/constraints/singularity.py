@@ -55,7 +55,7 @@ def probed(matrices: MotionMatrices, t: float, state: Vector) -> tuple[int, floa
     t : float
         Time of the state.
     state : ndarray, shape (2n,)
-        It keeps the constraints.
+        It satisfies the constraints.
 
     Returns
     -------

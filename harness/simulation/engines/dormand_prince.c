@@ -3,10 +3,10 @@
    Hairer, Norsett & Wanner I, section II.10; coefficients as in SciPy's DOP853. Before this text runge_kutta.py puts
    the number STATE of coordinates and velocities, and the functions of t and the state
 
-       accelerations                               and, where the constraints are to be kept,
+       accelerations                               and, for the projection onto the constraints,
        position_corrections, velocity_corrections  with the number PROJECTED of steps after which the state is
                                                    moved to them, or with Baumgarte's or Gear's (GGL) terms, which
-                                                   add to the time derivatives of the state so that what is missed dies out like
+                                                   add to the time derivatives of the state so that residuals decay like
                                                    exp(-GAMMA t).                                                */
 
 #include <float.h>

@@ -1,9 +1,9 @@
 """The robust engine: SciPy's integrators, pivoted solves, projection of each step.
 
 It works if the fixed pivots of the motion program fail. For redundant constraints, the rank of J is determined at
-states that satisfy the constraints and kept between them, because rounding or a stage off the constraints would raise
-it. For singular configurations, the least singular value that counts is monitored. If it runs to zero, one arc spans
-the zero (`singular_arc`), and all steps before end at half of the distance.
+states that satisfy the constraints. Between them it does not change, because rounding or a stage off the constraints
+would raise it. For singular configurations, the least singular value that counts is monitored. If it runs to zero, one
+collocation step spans the zero (`collocation`), and all steps before end at half of the distance.
 
 DOP853 takes the steps, of order 8. Two of its stages are at the end of a step: the difference of the time derivatives
 between them, relative to that of the states, estimates the stiffness (Hairer & Wanner, Solving Ordinary Differential
@@ -26,27 +26,29 @@ from ..constraints.singularity import extrapolated_zero, least_of, probed, singu
 from ..hard_cases import Difficulty
 from ..matrices import Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
+from .collocation import NODES, Collocation, collocated
 from .engine import Solutions, Step, Task, require_reach
-from .singular_arc import NODES, Arc, arc_over
 
 TOLERANCE = 1e-11
 TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
 SHORTEST = 1e-8  # of the longest step so far: a step that leads nowhere
-REACH = 5.0  # steps ahead within which a singular configuration calls for an arc over it
-ARC_ERROR = 1e-12  # relative error of an arc's coordinates that will do at any tolerance
-OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of an arc that is not rounding
-LONGER = (1.0, 1.5, 2.25)  # lengths of an arc that are tried, in terms of one that reaches as far behind as before
-CLEAR = 0.5  # least singular value at the end of an arc, in terms of the one at its start
-SHORTER = 0.7  # after an arc was rejected, the way to the singular configuration at which the next one is tried
-CLOSEST = 1e-7  # such a way, relative to the time or to its nominal size, at which the search for an arc is given up
-PLACE = 1e-6  # share of an arc to which the place of the singular configuration is found
+REACH = 5.0  # steps ahead within which a singular configuration calls for collocation
+COLLOCATION_ERROR = 1e-12  # relative error of a collocation step's coordinates that will do at any tolerance
+OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of a collocation step that is not rounding
+# lengths of a collocation step that are tried, in terms of one that reaches as far after as before
+LONGER = (1.0, 1.5, 2.25)
+CLEAR = 0.5  # least singular value at the end of a collocation step, in terms of the one at its start
+SHORTER = 0.7  # share of the way to the singular configuration left after which a rejected step is tried again
+CLOSEST = 1e-7  # such a way, relative to the time or to its nominal size, at which the search is given up
+PLACE = 1e-6  # share of a collocation step to which the place of the singular configuration is found
 UNTRUSTED = 1e-6  # relative singular values in which no digits are left
 FIRST, LEAST_FIRST, UNFELT = 0.01, 1e-6, 1e-5  # of the estimate of a first step
 RADAU_ORDER = 4  # of its error estimate in terms of the step
 NEARLY_SINGULAR = 1e-3  # relative singular values that are left out where a motion starts from such a configuration
 BOUNDARY = 6.1  # of DOP853's stability on the negative real axis
 MOST_AT_BOUNDARY = 15  # steps there, one after the other, before a motion counts as stiff
-FIRST_ARCS = 1.0 / 2.0 ** np.arange(12)  # lengths of arcs away from a singular configuration, as nominal ways
+# lengths of collocation steps away from a singular configuration, as nominal ways
+FIRST_LENGTHS = 1.0 / 2.0 ** np.arange(12)
 
 
 class RobustEngine:
@@ -79,7 +81,7 @@ class RobustEngine:
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
         self.stiff, self._at_boundary = False, 0  # the steps at the boundary of stability, one after the other
         self._multipliers, self._independent = problem.multipliers, problem.independent
-        self._arcs: list[Arc] = []
+        self._collocations: list[Collocation] = []
         self.restart(*start_of(problem))
 
     @classmethod
@@ -105,7 +107,7 @@ class RobustEngine:
             raise HolonomError(ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstruction or "--engine asks for it")
         if tol is not None and not TIGHTEST <= tol < 1:
             holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
-            raise HolonomError(ErrorKind.TOLERANCE_UNHELD, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
         return cls(task.problem, tol, task.matrices)
 
     @property
@@ -123,11 +125,11 @@ class RobustEngine:
         state : ndarray, shape (2n,)
             Coordinates, then velocities.
         """
-        self._arc: Arc | None = None
+        self._collocation: Collocation | None = None
         self.rank, until_singular = probed(self.matrices, time_point, state)
         if until_singular == 0:
             self.time, self.state = time_point, state
-            self._arc = self._arc_away()
+            self._collocation = self._collocation_away()
         else:
             self._begin(time_point, state)
             self._vanishing = time_point + until_singular
@@ -168,7 +170,9 @@ class RobustEngine:
         """
         steps, begun = self.steps, self.time
         while self.time < until:
-            yield self._along_arc(until) if self._arc or self._arc_found() else self._step(until)
+            yield (
+                self._along_collocation(until) if self._collocation or self._collocation_found() else self._step(until)
+            )
             self.steps += 1
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
@@ -177,13 +181,15 @@ class RobustEngine:
 
     @property
     def near_singularity(self) -> bool:
-        """True if a singular configuration is within the next steps or on the current arc."""
-        return self._arc is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
+        """True if a singular configuration is near or on the current collocation step."""
+        return self._collocation is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
 
     @property
     def singular_times(self) -> list[float]:
         """Times at which the motion went through a singular configuration."""
-        return [time_point for arc in self._arcs if (time_point := self._place(arc)) <= self.time]
+        return [
+            time_point for collocation in self._collocations if (time_point := self._place(collocation)) <= self.time
+        ]
 
     def solutions(self, times: Vector, states: Matrix) -> Solutions:
         """Return the unknowns of the equations of motion at several times.
@@ -193,7 +199,7 @@ class RobustEngine:
         times : ndarray, shape (k,)
             Times of the states.
         states : ndarray, shape (2n, k)
-            They keep the constraints.
+            They satisfy the constraints.
 
         Returns
         -------
@@ -210,7 +216,7 @@ class RobustEngine:
         t : float
             Time of the state.
         state : ndarray, shape (2n,)
-            It keeps the constraints.
+            It satisfies the constraints.
 
         Returns
         -------
@@ -220,12 +226,14 @@ class RobustEngine:
         at = self.matrices(t, state)
         singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
         factored = factored_constraints(at.mass, at.jacobian, min(self.rank, rank_of(singular_values, UNTRUSTED)))
-        arc = next((arc for arc in self._arcs if arc.start < t < arc.end), None)
-        if arc is None:
+        collocation = next(
+            (collocation for collocation in self._collocations if collocation.start < t < collocation.end), None
+        )
+        if collocation is None:
             accelerations = factored.accelerations(at.force, at.curvature)
             multipliers = factored.multipliers(at.force, at.curvature)
         else:
-            accelerations = arc.accelerations(t)
+            accelerations = collocation.accelerations(t)
             multipliers = factored.multipliers(at.force - at.mass @ accelerations, np.zeros_like(at.curvature))
         forces = at.jacobian.T @ multipliers
         return Solutions(accelerations, self._as_in_the_program(at.jacobian, multipliers, forces), forces)
@@ -327,7 +335,7 @@ class RobustEngine:
             self._vanishing = self._met
 
     def _settled(self, t: float | Vector, state: Vector) -> tuple[Vector, Vector]:
-        """Return the nearest state that keeps the constraints, and its accelerations.
+        """Return the nearest state that satisfies the constraints, and its accelerations.
 
         Of states, shape (k, 2n), each.
         """
@@ -355,21 +363,21 @@ class RobustEngine:
 
     # ---- singular configurations ----
 
-    def _arc_found(self) -> bool:
-        """Look for an arc over the singular configuration ahead, if there is one in reach."""
+    def _collocation_found(self) -> bool:
+        """Look for a collocation step across the singular configuration ahead."""
         ahead = self._vanishing - self.time
         if ahead > min(REACH * self._solver.h_abs, SHORTER * self._failed_at):
             return False
-        self._arc, self._failed_at = self._arc_over(ahead), ahead
-        if self._arc is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
+        self._collocation, self._failed_at = self._collocation_over(ahead), ahead
+        if self._collocation is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
             raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
-        return self._arc is not None
+        return self._collocation is not None
 
-    def _arc_over(self, ahead: float) -> Arc | None:
-        """Return an arc that ends clear of the singular configuration, or None."""
+    def _collocation_over(self, ahead: float) -> Collocation | None:
+        """Return a collocation step across the singular configuration, or None."""
         guess = np.tile(self._solver.f[self.n :], (NODES, 1))
         for longer in LONGER:
-            arc = arc_over(
+            collocation = collocated(
                 self._accelerations,
                 self.time,
                 self.time + 2 * longer * ahead,
@@ -377,65 +385,68 @@ class RobustEngine:
                 guess,
                 self.matrices.nominal.coordinates,
             )
-            if arc is None or not self._trusted(arc):
+            if collocation is None or not self._trusted(collocation):
                 return None
-            if self._least_at(arc.end, self._settled(arc.end, arc.last)[0]) > CLEAR * self._least:
-                return self._taken(arc)
+            if (
+                self._least_at(collocation.end, self._settled(collocation.end, collocation.last)[0])
+                > CLEAR * self._least
+            ):
+                return self._taken(collocation)
         return None
 
-    def _arc_away(self) -> Arc:
-        """Return an arc from a singular configuration, in the direction of the velocities."""
+    def _collocation_away(self) -> Collocation:
+        """Return a collocation step from a singular configuration, along the velocities."""
         rank = rank_of(singular_values_at(self.matrices, self.time, self.state), NEARLY_SINGULAR)
         state, factored = settle(self.matrices, self.time, self.state, rank)
         at = self.matrices(self.time, state)
         guess = np.tile(factored.accelerations(at.force, at.curvature), (NODES, 1))
         sizes = self.matrices.nominal.coordinates
         speed = np.max(np.abs(state[self.n :]) / sizes)
-        for length in FIRST_ARCS / speed if speed else ():
-            arc = arc_over(self._accelerations, self.time, self.time + length, state, guess, sizes)
-            if arc is not None and self._trusted(arc):
-                return self._taken(arc)
+        for length in FIRST_LENGTHS / speed if speed else ():
+            collocation = collocated(self._accelerations, self.time, self.time + length, state, guess, sizes)
+            if collocation is not None and self._trusted(collocation):
+                return self._taken(collocation)
         raise HolonomError(
             ErrorKind.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from"
         )
 
-    def _place(self, arc: Arc) -> float:
-        """Return the time of an arc at which the least counted singular value vanishes."""
+    def _place(self, collocation: Collocation) -> float:
+        """Return the time at which the least counted singular value vanishes."""
         from scipy.optimize import minimize_scalar
 
         def least(t: float) -> float:
-            return self._least_at(t, arc(np.array([t]))[:, 0])
+            return self._least_at(t, collocation(np.array([t]))[:, 0])
 
-        tolerance = PLACE * (arc.end - arc.start)
-        bounds = arc.start, arc.end
+        tolerance = PLACE * (collocation.end - collocation.start)
+        bounds = collocation.start, collocation.end
         return float(minimize_scalar(least, bounds=bounds, method="bounded", options={"xatol": tolerance}).x)
 
-    def _taken(self, arc: Arc) -> Arc:
-        self._arcs.append(arc)
-        return arc
+    def _taken(self, collocation: Collocation) -> Collocation:
+        self._collocations.append(collocation)
+        return collocation
 
-    def _trusted(self, arc: Arc) -> bool:
-        """Return True if an arc is smooth to the tolerance and ends on the constraints."""
-        if arc.error(self.matrices.nominal.coordinates) > max(self.tol, ARC_ERROR):
+    def _trusted(self, collocation: Collocation) -> bool:
+        """Return True if a step is smooth to the tolerance and ends on the constraints."""
+        if collocation.error(self.matrices.nominal.coordinates) > max(self.tol, COLLOCATION_ERROR):
             return False
         try:
-            settled = self._settled(arc.end, arc.last)[0]
+            settled = self._settled(collocation.end, collocation.last)[0]
         except InconsistentConstraints:
             return False
-        return self.matrices.nominal.share(settled - arc.last, settled) <= OFF_BRANCH
+        return self.matrices.nominal.share(settled - collocation.last, settled) <= OFF_BRANCH
 
     def _accelerations(self, times: Vector, states: Matrix) -> Matrix:
         return self._settled(times, states)[1]
 
-    def _along_arc(self, until: float) -> Step:
-        """Take a step along the arc, to its end or to a time."""
-        start, arc = self.time, self._arc
-        if until < arc.end:
-            self.time, self.state = until, arc(np.array([until]))[:, 0]
+    def _along_collocation(self, until: float) -> Step:
+        """Step along the collocation polynomial, to its end or to a time."""
+        start, collocation = self.time, self._collocation
+        if until < collocation.end:
+            self.time, self.state = until, collocation(np.array([until]))[:, 0]
         else:
-            self._arc = None
-            self._begin(arc.end, arc.last)
-        return Step(start, self.time, arc)
+            self._collocation = None
+            self._begin(collocation.end, collocation.last)
+        return Step(start, self.time, collocation)
 
 
 def _is_at_boundary(solver: DOP853) -> bool:

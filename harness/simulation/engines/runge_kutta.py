@@ -91,7 +91,7 @@ class RungeKuttaEngine(ProgramEngine):
         super().__init__(problem, read_precision("double"), True, matrices)
         if tol is not None and not FINEST <= tol < 1:
             holds = f"the Runge-Kutta engine holds tolerances from {FINEST:g} to 1, not {tol:g}"
-            raise HolonomError(ErrorKind.TOLERANCE_UNHELD, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
         stabilization = stabilization if problem.multipliers else Stabilization.NONE

@@ -372,7 +372,7 @@ def checked_tolerance(tol: float, precision: Precision) -> float:
     finest = f"1e-{precision.sure_digits + 1}"
     if not float(finest) <= tol < 1:
         raise HolonomError(
-            ErrorKind.TOLERANCE_UNHELD,
+            ErrorKind.TOLERANCE_OUT_OF_RANGE,
             detail=f"{precision.name} precision holds tolerances from {finest} to 1, not {tol:g}",
         )
     return tol

@@ -21,8 +21,8 @@ def shown(name: str, *found) -> Case:
     return Case(name, Difficulty.STIFF, "a truth told by hand", lambda extent: iter(found))
 
 
-HELD = shown(
-    "held",
+PASSED = shown(
+    "passed",
     reference_result("plain", "place", 1.25, 6.0),
     holonom_result("ours", "place", 9.0, 6.0),
     required("ours", "reported", True),
@@ -37,7 +37,7 @@ def run(monkeypatch, cases, *arguments) -> int:
 
 
 def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypatch, capsys):
-    assert run(monkeypatch, (HELD,), "--short", "--json", "-") == 0
+    assert run(monkeypatch, (PASSED,), "--short", "--json", "-") == 0
     content = json.loads(capsys.readouterr().out)
     Draft202012Validator(schema("hard-cases")).validate(content)
     (case,) = content["cases"]
@@ -49,7 +49,7 @@ def test_document_keeps_its_schema_and_tells_digits_verdicts_and_advice(monkeypa
 
 
 def test_a_failing_case_leaves_with_one(monkeypatch, capsys):
-    assert run(monkeypatch, (HELD, FAILED)) == 1
+    assert run(monkeypatch, (PASSED, FAILED)) == 1
     table = capsys.readouterr().out
     assert table.count("fails") == 1
     assert advice(Difficulty.STIFF) in table
@@ -58,7 +58,7 @@ def test_a_failing_case_leaves_with_one(monkeypatch, capsys):
 def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
     files = tmp_path / "first.svg", tmp_path / "second.svg"
     for file in files:
-        assert run(monkeypatch, (HELD, FAILED), "--plot", file) == 1
+        assert run(monkeypatch, (PASSED, FAILED), "--plot", file) == 1
     text = files[0].read_text()
     assert text == files[1].read_text()
     labels = " ".join(ET.fromstring(text).itertext())
@@ -68,7 +68,7 @@ def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
 
 
 def test_figure_that_cannot_be_written_is_refused(monkeypatch, tmp_path, capsys):
-    assert run(monkeypatch, (HELD,), "--plot", tmp_path / "no" / "figure.svg") == 2
+    assert run(monkeypatch, (PASSED,), "--plot", tmp_path / "no" / "figure.svg") == 2
     assert re.search(message_of(ErrorKind.UNWRITABLE), capsys.readouterr().err)
     assert not list(tmp_path.iterdir())
 
@@ -83,6 +83,6 @@ def test_advice_is_one_sentence_for_each_kind(kind):
 
 def test_results_and_sweep_of_a_case_are_distinguished():
     assert examined(FAILED, Extent.SHORT).sweep is None
-    report = examined(HELD, Extent.SHORT)
+    report = examined(PASSED, Extent.SHORT)
     assert len(report.results) == 3
     assert report.sweep.variable == "angle"

@@ -121,6 +121,6 @@ def test_digits_are_counted_against_the_scale(digits):
     assert digits_of_error(3 * 10.0**-digits, 3) == pytest.approx(digits)
 
 
-@pytest.mark.parametrize(("computed", "kept"), [([1.0], MOST), ([np.nan], 0), ([np.inf], 0), ([3.0], 0)])
-def test_digits_end_at_those_of_a_double_and_at_none(computed, kept):
-    assert correct_digits(computed, [mpf(1)]) == kept
+@pytest.mark.parametrize(("computed", "digits"), [([1.0], MOST), ([np.nan], 0), ([np.inf], 0), ([3.0], 0)])
+def test_digits_end_at_those_of_a_double_and_at_none(computed, digits):
+    assert correct_digits(computed, [mpf(1)]) == digits

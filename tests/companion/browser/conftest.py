@@ -23,7 +23,7 @@ def browser(tmp_path_factory):
 
 @pytest.fixture(scope="session", params=LOOKS, ids=str)
 def seen(request, browser, companion, chinese, own):
-    """What is met on every page, in one of the views; screenshots are kept."""
+    """What is met on every page, in one of the views; screenshots are stored."""
     view = request.param
     folder = SCREENSHOTS / str(view).replace(", ", "-")
     shutil.rmtree(folder, ignore_errors=True)

@@ -117,9 +117,9 @@ def _(record, draw):
 @of_class("dropped term", algebra=True)
 def _(record, draw):
     def drop(node):
-        kept = list(node)
-        del kept[draw.randrange(1, len(node))]
-        return kept if len(kept) > 2 else kept[1]
+        remaining = list(node)
+        del remaining[draw.randrange(1, len(node))]
+        return remaining if len(remaining) > 2 else remaining[1]
 
     return changed_node(record, draw, lambda node: is_head("Add", "Multiply")(node) and len(node) > 2, drop)
 

@@ -2,7 +2,7 @@
 
     python tests/crosscheck/tampering/tamper.py [SEED [MUTANTS]]
 
-The seed draws the changes, MUTANTS (15) of each class. Exit status 1: a true record is held up, a wrong one of a class
+The seed draws the changes, MUTANTS (15) of each class. Exit status 1: a true record is rejected, a wrong one of a class
 of algebra is not, or fewer than 99.5 % of all are.
 """
 
@@ -85,7 +85,7 @@ def wrong_records(trues, seed, count, kinds=tuple(CLASSES)):
 
 
 def of_other_scenes(folder, draw, count):
-    """Whether the records and the motions of other scenes are held up: class, what is other, why."""
+    """Whether the records and the motions of other scenes are rejected: class, what is other, why."""
     for text, old, new in draw.sample(OTHERS, min(count, len(OTHERS))):
         described, other = map(Source, written_texts(folder, (text, text.replace(old, new))))
         description, what = described.description(), f"{old} is {new}"
@@ -98,11 +98,11 @@ def of_other_scenes(folder, draw, count):
 
 
 def main(seed, count):
-    """Print what was found of each class, and each wrong record that was not held up."""
+    """Print what was found of each class, and each wrong record that was not rejected."""
     with tempfile.TemporaryDirectory() as folder:
         trues = list(true_records(written(Path(folder))))
     honest = [why for true in trues if (why := rejected(true.record, true, seed))]
-    print(*(f"true, and held up: {why}" for why in honest), sep="\n", flush=True)
+    print(*(f"true, and rejected: {why}" for why in honest), sep="\n", flush=True)
     made, found = Counter(), Counter()
     for wrong in wrong_records(trues, seed, count):
         made[wrong.kind] += 1

@@ -1,4 +1,4 @@
-"""Wrong records of every class are held up, and true ones are not; `make tampering` makes more of more scenes."""
+"""Wrong records of every class are rejected, and true ones are not; `make tampering` makes more of more scenes."""
 
 import random
 

@@ -53,10 +53,10 @@ def test_what_runge_kutta_cannot_hold_is_not_weighed(tol, precision):
 
 @pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize(
-    ("tol", "held"), [(FINEST, True), (np.nextafter(FINEST, 0), False), (np.nextafter(1, 0), True), (1.0, False)]
+    ("tol", "reached"), [(FINEST, True), (np.nextafter(FINEST, 0), False), (np.nextafter(1, 0), True), (1.0, False)]
 )
-def test_runge_kutta_holds_tolerances_from_its_finest_to_one(tol, held):
-    assert RungeKuttaEngine.comparable(float(tol)) is held
+def test_runge_kutta_holds_tolerances_from_its_finest_to_one(tol, reached):
+    assert RungeKuttaEngine.comparable(float(tol)) is reached
 
 
 def test_without_a_compiler_there_is_no_choice(monkeypatch):

@@ -37,7 +37,7 @@ def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
     assert np.max(np.abs(motion.matrices(motion.time, motion.state).residual)) < 1e-12
 
 
-def test_states_between_the_steps_and_within_an_arc_are_on_the_motion():
+def test_states_between_the_steps_and_within_a_collocation_step_are_on_the_motion():
     motion = RobustEngine(problem("linkage.mac"), 1e-12)
     for piece in motion.integrate(1.5):
         times = np.linspace(piece.start, piece.end, 5)
@@ -121,7 +121,7 @@ def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
         RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
 
 
-def test_the_first_arc_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
+def test_the_first_collocation_step_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
     motion = RobustEngine(in_line("-3", "-3"), 1e-10)
     monkeypatch.setattr(robust, "probed", lambda *asked: (2, 0.0))  # whose velocities point nowhere
     with np.errstate(divide="raise"), failing(ErrorKind.NO_WAY_ON):

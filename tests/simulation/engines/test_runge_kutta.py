@@ -1,4 +1,4 @@
-"""What is particular to the Runge-Kutta engine: compiled steps, states between them, the constraints kept in C."""
+"""What is particular to the Runge-Kutta engine: compiled steps, states between them, the projection in C."""
 
 import re
 from contextlib import suppress
@@ -166,7 +166,7 @@ def test_the_work_of_a_control_is_balanced():
 @pytest.mark.parametrize(
     ("request_", "kind"),
     [
-        (SimulationRequest(tol=1e-15), ErrorKind.TOLERANCE_UNHELD),
+        (SimulationRequest(tol=1e-15), ErrorKind.TOLERANCE_OUT_OF_RANGE),
         (SimulationRequest(precision="quadruple"), ErrorKind.RUNGE_KUTTA_IS_DOUBLE),
     ],
 )

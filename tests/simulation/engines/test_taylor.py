@@ -45,7 +45,7 @@ def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
     assert (found.coordinates, found.steps) == (truth.coordinates, truth.steps)
 
 
-def test_a_run_with_many_stops_kept_the_code_that_is_quickly_compiled(monkeypatch):
+def test_a_run_with_many_stops_uses_the_code_that_is_quickly_compiled(monkeypatch):
     """Each stop began a clock of its own."""
     monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
     wanted = SimulationRequest(until=Fraction(200), samples=0, max_step=0.25)

@@ -6,7 +6,7 @@ through it. So one long step spans the singular configuration: a polynomial whos
 at Gauss nodes on both sides of it, none of them near it (Hairer, Lubich & Wanner, Geometric Numerical Integration,
 section II.1.4). At each node the state is projected onto the constraints, which keeps it on the branch of the
 polynomial. The polynomial is found by iteration from the extrapolated motion. The decay of its Legendre coefficients
-gives its error, and an arc is rejected if the motion is not analytic.
+gives its error, and a collocation step is rejected if the motion is not analytic.
 """
 
 from collections.abc import Callable
@@ -34,22 +34,22 @@ Accelerations = Callable[[Vector, Matrix], Matrix]
 
 
 @dataclass(frozen=True)
-class Arc:
+class Collocation:
     """A polynomial motion between two times."""
 
     start: float
     end: float
-    # coordinates, velocities: coefficients of Legendre's polynomials over the arc
+    # coordinates, velocities: coefficients of Legendre's polynomials over the collocation step
     coordinates: Matrix
     velocities: Matrix
 
     def __call__(self, times: Vector) -> Matrix:
-        """States at times of the arc, shape (2n, times)."""
+        """States at times of the collocation step, shape (2n, times)."""
         places = (2 * np.asarray(times) - self.start - self.end) / (self.end - self.start)
         return np.concatenate([legendre.legval(places, self.coordinates), legendre.legval(places, self.velocities)])
 
     def accelerations(self, time: float) -> Vector:
-        """Return the accelerations at a given time of the arc.
+        """Return the accelerations at a given time of the collocation step.
 
         Parameters
         ----------
@@ -86,16 +86,16 @@ class Arc:
         return self(np.array([self.end]))[:, 0]
 
 
-def arc_over(
+def collocated(
     compute: Accelerations, start: float, end: float, state: Vector, guess: Matrix, sizes: Vector
-) -> Arc | None:
+) -> Collocation | None:
     """Return the motion from a state across a singular configuration to a later time.
 
     Parameters
     ----------
     compute : callable
         Takes times, shape (NODES,), and states near the constraints, shape (NODES, 2n), to the accelerations, shape
-        (NODES, n), at the nearest states that keep them.
+        (NODES, n), at the nearest states that satisfy them.
     start, end : float
         The singular configuration lies well between them.
     state : ndarray, shape (2n,)
@@ -107,39 +107,39 @@ def arc_over(
 
     Returns
     -------
-    Arc or None
+    Collocation or None
         None if the iteration finds no motion.
     """
     times, last = (start + end) / 2 + (end - start) / 2 * POINTS, np.inf
-    arc = _integrated(start, end, state, guess)
+    collocation = _integrated(start, end, state, guess)
     for iteration in range(ITERATIONS):
         try:
-            found = compute(times, arc(times).T)
+            found = compute(times, collocation(times).T)
         except InconsistentConstraints:
             return None
-        before, arc = arc, _integrated(start, end, state, found)
-        change = _size(arc.coordinates - before.coordinates, arc, sizes)
+        before, collocation = collocation, _integrated(start, end, state, found)
+        change = _size(collocation.coordinates - before.coordinates, collocation, sizes)
         if change <= ROUNDING or CONTRACTION * last < change <= SMALL:
-            return arc
+            return collocation
         if not np.isfinite(change) or (iteration > WARMING_UP and change > CONTRACTION * last):
             return None
         last = change
     return None
 
 
-def _integrated(start: float, end: float, state: Vector, accelerations: Matrix) -> Arc:
+def _integrated(start: float, end: float, state: Vector, accelerations: Matrix) -> Collocation:
     n, half = len(state) // 2, (end - start) / 2
     velocities = legendre.legint(TO_COEFFICIENTS @ accelerations, lbnd=-1, scl=half)
     velocities[0] += state[n:]
     coordinates = legendre.legint(velocities, lbnd=-1, scl=half)
     coordinates[0] += state[:n]
-    return Arc(start, end, coordinates, velocities)
+    return Collocation(start, end, coordinates, velocities)
 
 
-def _size(coefficients: Matrix, arc: Arc, sizes: Vector) -> float:
+def _size(coefficients: Matrix, collocation: Collocation, sizes: Vector) -> float:
     """Return a bound on a sum of Legendre polynomials, relative to the coordinates.
 
     Both are taken in terms of nominal sizes.
     """
-    extent = max(1.0, float(np.max(np.abs(arc.coordinates[0]) / sizes, initial=0.0)))
+    extent = max(1.0, float(np.max(np.abs(collocation.coordinates[0]) / sizes, initial=0.0)))
     return float(np.max(np.sum(np.abs(coefficients), axis=0) / sizes, initial=0.0)) / extent
