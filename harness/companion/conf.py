@@ -17,7 +17,6 @@ myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline", "attrs_block"
 bibtex_bibfiles = ["book/works.bib"]
 bibtex_default_style = "plain"
 bibtex_reference_style = "author_year"
-numfig = True  # chapters are named by their numbers
 smartquotes = False  # of code, too
 autodoc_default_options = {"members": True, "undoc-members": True, "special-members": "__getitem__, __call__"}
 autodoc_typehints_format = "short"

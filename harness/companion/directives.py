@@ -4,7 +4,8 @@
 equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
 templates. ``{show}`` without one takes a part of a template as its content. ``{run-figure} NAME`` is a figure of the
 chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
-``{exercise} GRADE`` is a question with its ``{answer}``.
+``{exercise} GRADE`` is a question with its ``{answer}``. ``{chapter}`chapter {number} <NAME>` `` is a link to a chapter
+with its number; Sphinx's ``numref`` would read all pages for every build.
 """
 
 import logging
@@ -19,7 +20,9 @@ from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
 from sphinx.environment import BuildEnvironment
+from sphinx.roles import XRefRole
 from sphinx.util.docutils import SphinxDirective, SphinxRole
+from sphinx.util.nodes import make_refnode
 from sphinx.writers.html5 import HTML5Translator
 
 from ..language import ENGLISH, LANGUAGES, catalog_file, gettext
@@ -34,6 +37,7 @@ from .shelf import Shelf
 from .stored_results import digest_of_all
 
 GRADES = 3
+BOOK = "book"
 APART, FIGURE = "apart", "run-figure"  # classes of nodes until a page is read, with its translations
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
@@ -299,6 +303,17 @@ def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
     _equations(env).pop(name, None)
 
 
+def _chapter_with_number(
+    app: Sphinx, env: BuildEnvironment, node: addnodes.pending_xref, content: nodes.TextElement
+) -> nodes.reference | None:
+    """Return the link to a chapter."""
+    name = f"{BOOK}/{node['reftarget']}"
+    if node["reftype"] != "chapter" or name not in env.toc_secnumbers:
+        return None
+    text = content.astext().format(number=".".join(map(str, env.toc_secnumbers[name][""])))
+    return make_refnode(app.builder, node["refdoc"], name, None, nodes.inline("", text))
+
+
 def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
     """Link the equations of a page, and add column names to its table cells."""
     partners = context.get("folders", {}).items()
@@ -311,7 +326,7 @@ def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any],
 def _places_from(app: Sphinx, name: str) -> dict[str, str]:
     """Return the link to each equation from a page."""
     found = _equations(app.env)
-    order = [each for each in app.env.toctree_includes.get("book/index", ()) if each in found]
+    order = [each for each in app.env.toctree_includes.get(f"{BOOK}/index", ()) if each in found]
     places: dict[str, str] = {}
     for page in [name, *order] if name in found else order:
         uri = "" if page == name else app.builder.get_relative_uri(name, page)
@@ -363,6 +378,7 @@ EVENTS = {
     "env-before-read-docs": _perform_runs,
     "env-purge-doc": _purge,
     "source-read": _put_shelf,
+    "missing-reference": _chapter_with_number,
     "html-page-context": _finish_page,
 }
 
@@ -384,6 +400,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
         app.add_directive(name, directive)
     app.add_role("value", Value())
     app.add_role("dfn", Definition(), override=True)
+    app.add_role("chapter", XRefRole(warn_dangling=True))
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
     for event, function in EVENTS.items():
         app.connect(event, function)
