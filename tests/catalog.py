@@ -122,7 +122,7 @@ def _faults(message: Message) -> Iterator[str]:
 
 def _unchanged(pattern: re.Pattern, text: str) -> set[str]:
     """What a text has of a kind, without the words that it defines and the names of chapters."""
-    return {found for found in pattern.findall(text) if not found.startswith(("{dfn}", "{numref}"))}
+    return {found for found in pattern.findall(text) if not found.startswith(("{dfn}", "{chapter}"))}
 
 
 def _english(message: Message) -> str:
