@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TypeVar
 
 from ..description import Description
+from ..language import translatable
 from ..record import Derivation, LeftOut, Record, Relation, Scene
 from . import derivation, initial_motion
 from .derivation import CheckedDerivation
@@ -37,7 +38,7 @@ from .verdict import Comparison, verify_all
 Checked = TypeVar("Checked", CheckedDerivation, CheckedScene)
 Compare = Callable[[Checked, tuple[Relation, ...]], Comparison | tuple[Comparison, ...]]
 
-OUT_OF_TIME = CheckResult(Verdict.UNDECIDED, None, None, "the time limit was reached before")
+OUT_OF_TIME = CheckResult(Verdict.UNDECIDED, None, None, translatable("the time limit was reached before"))
 
 
 def check_record(
@@ -126,8 +127,14 @@ class _Check:
         solved = [each for each in derived.equations if each.id in ("multipliers", "accelerations")]
         operations = operations_of(solved) if closed else None
         if derived.closed_form_operations != operations:
-            detail = f"the record counts {derived.closed_form_operations}, and there are {operations}"
-            yield _rejected(place, Item("closed_form_operations", "", "operations in (8) and (11)"), detail)
+            detail = translatable(
+                "the record counts %(recorded)s, and there are %(operations)s",
+                recorded=derived.closed_form_operations,
+                operations=operations,
+            )
+            yield _rejected(
+                place, Item("closed_form_operations", "", translatable("operations in (8) and (11)")), detail
+            )
 
     def _on_redundancy(
         self, place: Place, derived: Derivation, checked: CheckedDerivation, starts: Sequence[Mapping]
@@ -136,7 +143,7 @@ class _Check:
         independent_names = [name for name in names if name not in derived.redundant]
         item = Item("redundant_constraints", "1", _redundant_in_words(derived.redundant))
         if [*derived.redundant] != [name for name in names if name not in independent_names]:
-            yield _rejected(place, item, "there are no such constraints")
+            yield _rejected(place, item, translatable("there are no such constraints"))
             return
         regular = derived.mass_matrix == "regular"
         found = self._time.result(
@@ -178,11 +185,13 @@ class _Check:
                 compare = comparisons[equation.id]
                 yield self._verify(place, item, lambda c=compare, e=equation: c(checked, e.relations), checked.system)
             else:
-                yield _rejected(place, item, "no such equation belongs here; or it is there twice, or out of order")
+                reason = translatable("no such equation belongs here; or it is there twice, or out of order")
+                yield _rejected(place, item, reason)
         recorded = {(each.id, each.number, each.name) for each in part.equations}
         for item in items:
             if item not in recorded:
-                yield _rejected(place, item, "the record does not hold this equation", is_recorded=False)
+                reason = translatable("the record does not contain this equation")
+                yield _rejected(place, item, reason, is_recorded=False)
 
     def _verify(
         self,
@@ -194,8 +203,9 @@ class _Check:
         def work() -> CheckResult:
             try:
                 compared = compare()
-            except NotComparable as reason:
-                return CheckResult(Verdict.DISAGREES, None, None, f"the record holds {reason}")
+            except NotComparable as error:
+                reason = translatable("the record contains %(reason)s", reason=error.reason)
+                return CheckResult(Verdict.DISAGREES, None, None, reason)
             compared = (compared,) if isinstance(compared, Comparison) else compared
             comparisons = [replace(each, domain=system.terms) for each in compared]
             return verify_all(comparisons, f"{self._seed} {item.number} {item.name}")
@@ -208,8 +218,12 @@ class _Check:
         predicted = None if math.isinf(size) else size
         expected = LeftOut(tuple(numbers), predicted, self._limit) if numbers else None
         if left_out != expected:
-            detail = f"the record has {left_out or 'nothing'}, where {expected or 'nothing'} belongs"
-            yield _rejected(place, Item("left_out", "", "what is left out"), detail)
+            detail = translatable(
+                "the record has %(recorded)s, where %(expected)s belongs",
+                recorded=_in_words(left_out),
+                expected=_in_words(expected),
+            )
+            yield _rejected(place, Item("left_out", "", translatable("what is left out")), detail)
 
 
 def _as_verdict(difference: Difference) -> EquationVerdict:
@@ -218,16 +232,27 @@ def _as_verdict(difference: Difference) -> EquationVerdict:
 
 
 def _redundant_in_words(redundant: Sequence[str]) -> str:
-    return (
-        f"constraints that follow from the others: {'those of ' if redundant else ''}{', '.join(redundant) or 'none'}"
-    )
+    if not redundant:
+        return translatable("constraints that follow from the others: none")
+    return translatable("constraints that follow from the others: those of %(names)s", names=", ".join(redundant))
 
 
 def _rejected(place: Place, item: Item, reason: str, is_recorded: bool = True) -> EquationVerdict:
     return verdict_on(place, item, CheckResult(Verdict.DISAGREES, None, None, reason), is_recorded=is_recorded)
 
 
+def _in_words(left_out: LeftOut | None) -> str:
+    if left_out is None:
+        return translatable("nothing")
+    numbers, size, limit = left_out
+    return translatable(
+        "%(numbers)s of size %(size)s over %(limit)s", numbers=", ".join(numbers), size=size, limit=limit
+    )
+
+
 def _left_out(place: Place, left_out: LeftOut | None) -> Iterator[EquationVerdict]:
     nothing = CheckResult(Verdict.LEFT_OUT, None, None)
     for number in left_out.numbers if left_out else ():
-        yield verdict_on(place, Item("", number, "(not made)"), nothing, is_recorded=False, left_out=left_out)
+        yield verdict_on(
+            place, Item("", number, translatable("(not made)")), nothing, is_recorded=False, left_out=left_out
+        )

@@ -13,9 +13,19 @@ from itertools import combinations_with_replacement, product
 
 import sympy as sp
 
+from ..language import translatable
 from ..record import Equation, Relation
 from .independent import IndependentEquations
-from .relations import Entries, NotComparable, list_of, read_exactly, residual_pairs, solved_for, sparse_entries
+from .relations import (
+    NO_RELATION,
+    Entries,
+    NotComparable,
+    list_of,
+    read_exactly,
+    residual_pairs,
+    solved_for,
+    sparse_entries,
+)
 from .system import MechanicalSystem, gradient
 from .verdict import Comparison, Pair
 
@@ -109,7 +119,7 @@ def constraints(checked: CheckedDerivation, relations: Relations) -> Comparison:
     -------
     Comparison
     """
-    return Comparison(residual_pairs("constraint", relations, checked.system.constraints))
+    return Comparison(residual_pairs(translatable("constraint"), relations, checked.system.constraints))
 
 
 def equations_of_motion(checked: CheckedDerivation, relations: Relations) -> Comparison:
@@ -128,7 +138,7 @@ def equations_of_motion(checked: CheckedDerivation, relations: Relations) -> Com
     -------
     Comparison
     """
-    return Comparison(residual_pairs("equation of motion", relations, checked.stated.motion))
+    return Comparison(residual_pairs(translatable("equation of motion"), relations, checked.stated.motion))
 
 
 def split_kinetic_energy(checked: CheckedDerivation, relations: Relations) -> Comparison:
@@ -155,7 +165,7 @@ def split_kinetic_energy(checked: CheckedDerivation, relations: Relations) -> Co
     else:
         A = sparse_entries("A", (n, n), (0, 1), relations[: max(len(relations) - n - 1, 0)])
         if missing := {(s, s) for s in range(1, n + 1)} - A.keys():
-            raise NotComparable(f"no relation for A{list(min(missing))}")
+            raise NotComparable(NO_RELATION, left=f"A{list(min(missing))}")
     rest = relations[len(A) :]
     return Comparison(
         (
@@ -225,7 +235,9 @@ def inverse_mass_matrix(checked: CheckedDerivation, relations: Relations) -> Com
     return Comparison(
         tuple(
             Pair(
-                f"row {row + 1} of A_inverse, times column {k + 1} of what it inverts",
+                translatable(
+                    "row %(row)s of A_inverse, times column %(column)s of what it inverts", row=row + 1, column=k + 1
+                ),
                 sp.Add(*(inverse[row, s] * A[s][k] for s in range(n))),
                 sp.Integer(row == k),
             )
@@ -255,7 +267,12 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
     derived = sparse_entries("christoffel", (n, n, n), (2, 0, 1), relations)
     for k, m, s in derived:
         if k > m:
-            raise NotComparable(f"christoffel[{k}, {m}, {s}], which is equal to christoffel[{m}, {k}, {s}]")
+            raise NotComparable(
+                translatable("christoffel[%(k)s, %(m)s, %(s)s], which is equal to christoffel[%(m)s, %(k)s, %(s)s]"),
+                k=k,
+                m=m,
+                s=s,
+            )
     at_rest = dict.fromkeys(checked.system.accelerations, sp.Integer(0))
     expected = {}
     for s, residual in enumerate(checked.stated.kinetic, 1):
@@ -281,7 +298,7 @@ def constraint_accelerations(checked: CheckedDerivation, relations: Relations) -
     Comparison
     """
     expected = checked.stated.constraint_accelerations
-    return Comparison(residual_pairs("constraint acceleration", relations, expected))
+    return Comparison(residual_pairs(translatable("constraint acceleration"), relations, expected))
 
 
 def equations_for_multipliers(checked: CheckedDerivation, relations: Relations) -> Comparison:
@@ -300,7 +317,7 @@ def equations_for_multipliers(checked: CheckedDerivation, relations: Relations) 
     """
     expected = checked.known.constraint_accelerations
     return Comparison(
-        residual_pairs("equation for the multipliers", relations, expected),
+        residual_pairs(translatable("equation for the multipliers"), relations, expected),
         solves=(checked.known.driven,),
         certificate=checked.driven_accelerations(),
     )
@@ -374,7 +391,7 @@ def free_motion_condition(checked: CheckedDerivation, relations: Relations) -> C
     """
     expected = checked.known.constraint_accelerations
     return Comparison(
-        residual_pairs("condition of free motion", relations, expected),
+        residual_pairs(translatable("condition of free motion"), relations, expected),
         solves=(checked.known.free,),
         certificate=checked.free_accelerations(),
     )

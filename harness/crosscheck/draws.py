@@ -13,6 +13,7 @@ from itertools import combinations
 import sympy as sp
 from mpmath import mp
 
+from ..language import translatable
 from .branches import Branch, Branches
 from .evaluation import Number, Steps
 from .points import random_point
@@ -114,7 +115,12 @@ class Draws:
         for i, branch in enumerate(self.branches):
             for side in (1, -1):
                 if branch.has_sides and ((i, side),) not in self._reached and not branch.is_empty(side):
-                    missing.append(f"{branch.argument} is {'positive' if side > 0 else 'negative'}")
+                    what = (
+                        translatable("%(expression)s is positive")
+                        if side > 0
+                        else translatable("%(expression)s is negative")
+                    )
+                    missing.append(translatable(what, expression=str(branch.argument)))
         return missing if self.names else []
 
     def _drawn(self, attempt: int, draw: random.Random) -> dict[sp.Symbol, sp.Rational]:

@@ -16,12 +16,13 @@ import sympy as sp
 from mpmath import mp
 
 from ..description import DescribedScene
+from ..language import translatable
 from ..record import Relation, Scene
 from .derivation import CheckedDerivation
 from .digits import WORKING_DIGITS
 from .evaluation import Steps
 from .independent import IndependentEquations
-from .relations import NotComparable, list_of, solved_for
+from .relations import NotComparable, list_of, numbered, solved_for
 from .system import MechanicalSystem, exact, history, initial
 from .verdict import Comparison, Pair
 
@@ -177,7 +178,7 @@ def free_motion_condition(checked: CheckedScene, relations: Relations) -> tuple[
     return (
         Comparison(
             tuple(
-                Pair(f"condition of free motion {beta}", value, residual)
+                Pair(numbered(translatable("condition of free motion"), beta), value, residual)
                 for beta, (value, residual) in enumerate(zip(derived, expected, strict=True), start=1)
             ),
             given=checked.control_law,
@@ -206,14 +207,14 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     names = tuple(map(initial, checked.state))
     derived = solved_for(names, relations)
     if list(checked.scene.initial_state) != [symbol.name for symbol in checked.state]:
-        raise NotComparable("an initial state that is not complete, or not in order")
+        raise NotComparable(translatable("an initial state that is not complete, or not in order"))
     for name in names:
         if derived[name] != checked.initial_values[name]:
-            raise NotComparable(f"two values of {name}")
+            raise NotComparable(translatable("two values of %(name)s"), name=name)
     require_given(checked, derived)
     pairs = (
-        *_vanishing("constraint", checked.system.constraints),
-        *_vanishing("derivative of constraint", checked.derivation.stated.constraint_derivatives),
+        *_vanishing(translatable("constraint"), checked.system.constraints),
+        *_vanishing(translatable("derivative of constraint"), checked.derivation.stated.constraint_derivatives),
     )
     return at_start(checked, pairs)
 
@@ -243,7 +244,9 @@ def require_given(checked: CheckedScene, derived: Definitions) -> None:
         return
     largest = max(changes, key=lambda name: _size(changes[name]), default=None)
     if largest is None or stated is None or stated[0] != largest.name:
-        raise NotComparable(f"an initial value of {largest or stated[0]} that is another than the one given")
+        raise NotComparable(
+            translatable("an initial value of %(name)s that is another than the one given"), name=largest or stated[0]
+        )
     _require_correction(checked, _size(changes[largest]), stated[1])
 
 
@@ -254,9 +257,11 @@ def _require_correction(checked: CheckedScene, change: mp.mpf, stated: str) -> N
     """
     given = max(_size(value.xreplace(checked.parameters)) for value in checked.given_values.values())
     if not abs(change - mp.mpf(stated)) <= mp.mpf(10) ** -STATED_DIGITS * change:
-        raise NotComparable(f"a correction of {stated}, where it is {mp.nstr(change, 6)}")
+        raise NotComparable(
+            translatable("a correction of %(stated)s, where it is %(change)s"), stated=stated, change=mp.nstr(change, 6)
+        )
     if change > LIMITED_DIGITS * (given or 1):
-        raise NotComparable(f"a correction of {stated}, which is larger than rounding")
+        raise NotComparable(translatable("a correction of %(stated)s, which is larger than rounding"), stated=stated)
 
 
 def _size(number: sp.Expr) -> mp.mpf:
@@ -329,14 +334,16 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
     ordered = sorted(relations, key=lambda relation: str(relation.left_tree).startswith("dot("))
     if sorted(map(str, lefts)) != sorted(initial(symbol).name for symbol in names) or ordered != list(relations):
         raise NotComparable(
-            f"values of {_listed(map(str, lefts))} where {_listed(initial(x).name for x in names)} belong"
+            translatable("values of %(recorded)s where %(expected)s belong"),
+            recorded=_listed(map(str, lefts)),
+            expected=_listed(initial(x).name for x in names),
         )
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
         *_for_all_states(checked, checked.system.coordinates, checked.known.system.constraints, fixed),
         *_for_all_states(checked, checked.system.velocities, checked.known.constraint_derivatives, fixed),
     ]
-    always = Comparison(tuple(_vanishing("constraint", residuals)), given={**fixed, **checked.start})
+    always = Comparison(tuple(_vanishing(translatable("constraint"), residuals)), given={**fixed, **checked.start})
     values = (Pair(name.name, fixed[name], name) for name in fixed)
     return always, *at_start(checked, values)
 
@@ -473,7 +480,7 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
             rates[symbol] = series.xreplace({system.time: checked.initial_time})
             pairs.append(Pair(initial(symbol).name, rates[symbol], symbol))
             series = series.diff(system.time)
-        pairs.append(Pair(f"remainder of the series of {q}", series, sp.Integer(0)))
+        pairs.append(Pair(translatable("remainder of the series of %(name)s", name=str(q)), series, sp.Integer(0)))
     highest = {x: rates[x] for x in (*system.accelerations, *system.jerks)}
     return (
         Comparison(
@@ -487,7 +494,7 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
 
 def _vanishing(what: str, expressions: Iterable[sp.Expr]) -> Iterable[Pair]:
     for i, expression in enumerate(expressions, start=1):
-        yield Pair(f"{what} {i}", sp.Integer(0), expression)
+        yield Pair(numbered(what, i), sp.Integer(0), expression)
 
 
 COMPARISONS = {

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from mpmath import mp
 
+from ..language import translatable
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .motion_states import ComparedValue
@@ -157,7 +158,12 @@ class _Search:
             return ""
         name = max(self._guess, key=lambda name: abs(found[name] - self._start[name]))
         given, true = mp.nstr(self._start[name], 12), mp.nstr(found[name], 12)
-        return f"initial value of {name}: {given}, where {true} is nearer to the guess"
+        return translatable(
+            "initial value of %(name)s: %(given)s, where %(true)s is nearer to the guess",
+            name=name,
+            given=given,
+            true=true,
+        )
 
     def _is_same(self, found: State) -> bool:
         """Return True if a root is the initial state, to the digits that it has."""

@@ -15,6 +15,7 @@ from mpmath import mp
 from ..described import System
 from ..description import DescribedScene, Description
 from ..failures import HolonomError
+from ..language import translatable
 from ..record import Record, Scene
 from .described_motion import DescribedMotion
 from .digits import CONFIRMING_DIGITS, DIGITS, WORKING_DIGITS
@@ -141,10 +142,16 @@ def _law_differs(scene: Scene, motion: DescribedMotion) -> str:
             try:
                 found, stated = (law.at(Taylor(0), time, parameters) for law in (recorded_law, motion.law))
             except IrregularPoint:
-                return f"the law has no value at t = {mp.nstr(time, 12)}"
+                return translatable("the law has no value at t = %(time)s", time=mp.nstr(time, 12))
             for name, (belongs,) in stated.items():
                 if abs(found[name][0] - belongs) > mp.mpf(10) ** -DIGITS * abs(belongs):
-                    return f"{name} is {found[name][0]}, where {belongs} is stated, at t = {mp.nstr(time, 12)}"
+                    return translatable(
+                        "%(name)s is %(found)s, where %(stated)s is stated, at t = %(time)s",
+                        name=name,
+                        found=str(found[name][0]),
+                        stated=str(belongs),
+                        time=mp.nstr(time, 12),
+                    )
     return ""
 
 
@@ -178,7 +185,7 @@ def _differences_of_effects(record: Record, premises: Premises) -> Iterator[Diff
         yield Difference("derivations", _difference(recorded, [everything]))
     for scene in record.scenes:
         if scene.derivation >= len(recorded) or recorded[scene.derivation] != scene.effects:
-            yield Difference("derivation", "its effects are not those of the scene", scene.name)
+            yield Difference("derivation", translatable("its effects are not those of the scene"), scene.name)
 
 
 def _order(found: object) -> object:
@@ -186,7 +193,9 @@ def _order(found: object) -> object:
 
 
 def _difference(recorded: object, stated: object) -> str:
-    return f"the record has {_short(recorded)}, the description {_short(stated)}"
+    return translatable(
+        "the record has %(recorded)s, the description %(stated)s", recorded=_short(recorded), stated=_short(stated)
+    )
 
 
 def _short(value: object, most: int = 120) -> str:

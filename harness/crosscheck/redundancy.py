@@ -14,6 +14,7 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
+from ..language import translatable
 from .digits import DIGITS, WORKING_DIGITS
 from .draws import Point
 from .evaluation import Steps
@@ -81,10 +82,11 @@ def verify_redundancy(
             if len(found) == CONFIGURATIONS:
                 break
     if not found and manifold.only_independent_hold:
-        detail = "where the independent constraints hold, the others do not"
+        detail = translatable("where the independent constraints hold, the others do not")
         return CheckResult(Verdict.DISAGREES, DIGITS, manifold.only_independent_hold, detail)
     if not found:
-        return CheckResult(Verdict.UNDECIDED, None, None, "no configuration was found that satisfies all constraints")
+        reason = translatable("no configuration was found that satisfies all constraints")
+        return CheckResult(Verdict.UNDECIDED, None, None, reason)
     largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
     detail = _contradiction(largest, len(independent), len(described.coordinates), regular)
     return CheckResult(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
@@ -92,9 +94,16 @@ def verify_redundancy(
 
 def _contradiction(found: Ranks, independent: int, coordinates: int, regular: bool) -> str:
     if found.every != independent or found.independent != independent:
-        return f"{found.every} constraints are independent, and {found.independent} of the {independent} listed as such"
+        return translatable(
+            "%(every)s constraints are independent, and %(found)s of the %(independent)s listed as such",
+            every=found.every,
+            found=found.independent,
+            independent=independent,
+        )
     if (found.mass == coordinates) != regular:
-        return f"the mass matrix has the rank {found.mass} of {coordinates}"
+        return translatable(
+            "the mass matrix has the rank %(rank)s of %(coordinates)s", rank=found.mass, coordinates=coordinates
+        )
     return ""
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
+from ..language import translatable
 from ..record import Relation
 from ..trees import Tree
 from .system import exact
@@ -14,9 +15,23 @@ from .verdict import Pair
 Entries = Mapping[tuple[int, ...], sp.Expr]
 """Entries of an indexed quantity, by their indices, which count from one."""
 
+NO_RELATION = translatable("no relation for %(left)s")
+
 
 class NotComparable(Exception):
-    """A relation that is missing, or has another left side."""
+    """A relation that is missing, or has another left side.
+
+    Parameters
+    ----------
+    pattern : str
+        Message with placeholders, which a catalog translates.
+    **values : object
+        Values of the placeholders.
+    """
+
+    def __init__(self, pattern: str, **values: object) -> None:
+        super().__init__(pattern)
+        self.reason = translatable(pattern, **values)
 
 
 def read_exactly(keys: Sequence[Tree], relations: Sequence[Relation]) -> list[sp.Expr]:
@@ -41,10 +56,12 @@ def read_exactly(keys: Sequence[Tree], relations: Sequence[Relation]) -> list[sp
     """
     for i, relation in enumerate(relations):
         if i >= len(keys) or relation.left_tree != keys[i]:
-            belongs = shown(keys[i]) if i < len(keys) else "nothing"
-            raise NotComparable(f"{shown(relation.left_tree)} where {belongs} belongs")
+            belongs = shown(keys[i]) if i < len(keys) else translatable("nothing")
+            raise NotComparable(
+                translatable("%(left)s where %(belongs)s belongs"), left=shown(relation.left_tree), belongs=belongs
+            )
     if len(relations) < len(keys):
-        raise NotComparable(f"no relation for {shown(keys[len(relations)])}")
+        raise NotComparable(NO_RELATION, left=shown(keys[len(relations)]))
     return [exact(relation.right) for relation in relations]
 
 
@@ -135,10 +152,27 @@ def sparse_entries(
             case _:
                 inside = False
         if not inside or (place := [indices[i] for i in order]) <= last:
-            raise NotComparable(f"an entry {shown(relation.left_tree)} that is out of place")
+            raise NotComparable(translatable("an entry %(left)s that is out of place"), left=shown(relation.left_tree))
         last = place
         entries[tuple(indices)] = exact(relation.right)
     return entries
+
+
+def numbered(what: str, number: int) -> str:
+    """Return the name of a quantity, for messages: "constraint 2".
+
+    Parameters
+    ----------
+    what : str
+        Name of the quantities.
+    number : int
+        Place among them, counted from 1.
+
+    Returns
+    -------
+    str
+    """
+    return translatable("%(what)s %(number)s", what=what, number=number)
 
 
 def residual_pairs(what: str, relations: Sequence[Relation], expected: Sequence[sp.Expr]) -> tuple[Pair, ...]:
@@ -164,9 +198,14 @@ def residual_pairs(what: str, relations: Sequence[Relation], expected: Sequence[
         There are more or fewer relations than residuals.
     """
     if len(relations) != len(expected):
-        raise NotComparable(f"{len(relations)} relations ({what}) where {len(expected)} belong")
+        raise NotComparable(
+            translatable("%(count)s relations (%(what)s) where %(expected)s belong"),
+            count=len(relations),
+            what=what,
+            expected=len(expected),
+        )
     return tuple(
-        Pair(f"{what} {i}", exact(relation.left) - exact(relation.right), residual)
+        Pair(numbered(what, i), exact(relation.left) - exact(relation.right), residual)
         for i, (relation, residual) in enumerate(zip(relations, expected, strict=True), start=1)
     )
 
@@ -189,4 +228,4 @@ def shown(left: Tree) -> str:
         case str():
             return left
         case _:
-            return "an expression"
+            return translatable("an expression")

@@ -49,7 +49,7 @@ class Item(NamedTuple):
     name: str
 
 
-OPINION = Item("lagranges_method", "2", "Lagrange's equations (SymPy LagrangesMethod)")
+OPINION = Item("lagranges_method", "2", translatable("Lagrange's equations (SymPy LagrangesMethod)"))
 
 
 class Place(NamedTuple):

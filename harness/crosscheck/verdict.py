@@ -22,6 +22,7 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
+from ..language import translatable
 from .branches import Branches, branches_of
 from .digits import CONFIRMING_DIGITS, DIGITS, POINTS, WORKING_DIGITS
 from .draws import Draws, Point
@@ -164,7 +165,9 @@ class _Verification:
         if detail := self._difference(self.draws.at_branches()):
             return CheckResult(Verdict.DISAGREES, DIGITS, self.points, detail)
         if sides := self.draws.sides_not_reached():
-            return CheckResult(Verdict.UNDECIDED, None, fewest, f"no point was found where {sides[0]}")
+            return CheckResult(
+                Verdict.UNDECIDED, None, fewest, translatable("no point was found where %(side)s", side=sides[0])
+            )
         verdict = Verdict.AGREES if self._agrees_independently() else Verdict.SAMPLED
         return CheckResult(verdict, DIGITS, min(self.equal))
 
@@ -196,18 +199,25 @@ class _Verification:
         if found is Found.DIFFERENT:
             derived, known = _distinguished(mp.re(left), mp.re(right))
         else:
-            derived, known = "no real value", mp.nstr(mp.re(right), SHOWN)
-        return (
-            f"{self.comparison.pairs[i].quantity}: the record gives {derived}, "
-            f"the independent evaluation {known}{_where(point)}"
+            derived, known = translatable("no real value"), mp.nstr(mp.re(right), SHOWN)
+        difference = translatable(
+            "%(quantity)s: the record gives %(derived)s, the independent evaluation %(known)s",
+            quantity=self.comparison.pairs[i].quantity,
+            derived=derived,
+            known=known,
         )
+        where = ", ".join(f"{symbol.name} = {number}" for symbol, number in point.items())
+        return translatable("%(difference)s at %(where)s", difference=difference, where=where) if where else difference
 
     def _too_few(self, fewest: int) -> CheckResult:
         for equal, lost in zip(self.equal, self.lost, strict=True):
             if lost and not equal:
                 return CheckResult(Verdict.DISAGREES, DIGITS, ATTEMPTS * self.points, lost)
-        points = f"only {fewest} regular points were" if fewest else "no regular point was"
-        reason = f"{points} found among those drawn at random"
+        reason = (
+            translatable("only %(points)s regular points were found among those drawn at random", points=fewest)
+            if fewest
+            else translatable("no regular point was found among those drawn at random")
+        )
         return CheckResult(Verdict.UNDECIDED, None, fewest or None, reason)
 
     def _agrees_independently(self) -> bool:
@@ -364,12 +374,17 @@ def verify_rounded(comparison: Comparison) -> CheckResult:
         with mp.workdps(CONFIRMING_DIGITS):
             found, left, right, *changes = steps.at(values)
             if found is None or left is None or right is None or mp.im(found):
-                detail = f"{pair.quantity} has no real value at the initial time"
+                detail = translatable("%(quantity)s has no real value at the initial time", quantity=pair.quantity)
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
             explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
             noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * max(abs(left), abs(right))
             if abs(found) > explained + noise:
-                detail = f"{pair.quantity}: the record gives {mp.nstr(left, 12)}, where {mp.nstr(right, 12)} belongs"
+                detail = translatable(
+                    "%(quantity)s: the record gives %(derived)s, where %(known)s belongs",
+                    quantity=pair.quantity,
+                    derived=mp.nstr(left, 12),
+                    known=mp.nstr(right, 12),
+                )
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
     return CheckResult(Verdict.AGREES, DIGITS, 1)
 
@@ -411,12 +426,6 @@ def _distinguished(left: Number, right: Number) -> tuple[str, str]:
             if texts[0] != texts[1]:
                 break
     return texts
-
-
-def _where(point: Point) -> str:
-    if not point:
-        return ""
-    return " at " + ", ".join(f"{symbol.name} = {number}" for symbol, number in point.items())
 
 
 def _free_names(comparison: Comparison) -> list[str]:

@@ -26,6 +26,7 @@ from holonom.crosscheck.report import Verdict
 from holonom.documents import ask
 from holonom.failures import HolonomError
 from holonom.formats import Document
+from holonom.language import translated
 from holonom.record import read_record
 from holonom.source import Source
 
@@ -65,7 +66,9 @@ def rejected(record, true, seed):
     except HolonomError as refusal:
         return f"refused: {refusal}"
     unwanted = [each for each in report.verdicts if each.verdict in (Verdict.DISAGREES, Verdict.UNDECIDED)]
-    return "; ".join(f"({each.number}) {each.id} {each.verdict}: {each.detail}" for each in unwanted)
+    return "; ".join(
+        f"({each.number}) {each.id} {translated(each.verdict)}: {translated(each.detail)}" for each in unwanted
+    )
 
 
 def wrong_records(trues, seed, count, kinds=tuple(CLASSES)):

@@ -1,6 +1,7 @@
 """Wrong records of every class are rejected, and true ones are not; `make tampering` makes more of more scenes."""
 
 import random
+import re
 
 import pytest
 from evaluator import difference
@@ -8,7 +9,10 @@ from mutants import CLASSES
 from scenes import CIRCLE, KINKS, OTHERS, written_texts
 from tamper import of_other_scenes, rejected, true_records, wrong_records
 
+from holonom.language import speaking
+
 SEED = "make check"
+ENGLISH_PROSE = re.compile(r"[A-Za-z]{2,},? [a-z]{2,}")
 SOME = 9  # classes of which a wrong record is made for every change
 
 
@@ -23,10 +27,14 @@ def test_true_records_are_not_rejected(trues):
 
 
 def require_found(trues, kinds):
+    """Each is rejected, with a reason that has no English words in Chinese."""
     wrong = list(wrong_records(trues, SEED, 1, kinds))
-    missed = [f"{each.kind}: {each.difference}" for each in wrong if not rejected(each.record, each.true, SEED)]
-    assert missed == []
+    with speaking("zh"):
+        reasons = [rejected(each.record, each.true, SEED) for each in wrong]
+    assert [f"{each.kind}: {each.difference}" for each, why in zip(wrong, reasons, strict=True) if not why] == []
     assert {each.kind for each in wrong} == {*kinds}
+    worded = [why for why in reasons if not why.startswith(("refused", "() description"))]  # those quote the files
+    assert [why for why in worded if ENGLISH_PROSE.search(why)] == []
 
 
 def test_wrong_records_of_some_classes_are_rejected(trues):
