@@ -55,6 +55,8 @@ def test_help_shows_a_whole_summary_and_examples_that_are_commands(name, command
     summary = command.help.splitlines()[0]
     assert len(summary) <= 45
     assert summary in cli.get_help(click.Context(cli, terminal_width=80))
+    lines = command.get_help(click.Context(command, info_name=f"holonom {name}", terminal_width=80)).splitlines()
+    assert [line for line in lines if len(line) > 80 or (line.endswith(("...", "…")) and "Usage:" not in line)] == []
     assert len(command.examples) >= (2 if command.params else 1)
     for example in command.examples:
         called, *arguments = shlex.split(example)

@@ -19,7 +19,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     examples=[
         "program examples/chain.mac --set N=64 --to python -o chain.py",
         "program examples/pendulum.mac --to c --parameters m -o pendulum/",
-        "program examples/crane.mac --to python --module jax --parameters m,c -o crane.py",
+        "program examples/crane.mac --to python --module jax -o crane.py",
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))

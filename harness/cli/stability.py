@@ -58,7 +58,7 @@ def linearize(
 @holonom.command(
     examples=[
         "linearize-along examples/pendulum.mac --until 2 --samples 21",
-        "linearize-along examples/shaken_pendulum.mac --scene upright_scene --until 1/10",
+        "linearize-along examples/shaken_pendulum.mac --scene upright_scene",
     ]
 )
 @asks_one_scene()

@@ -20,7 +20,7 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
 @holonom.command(
     examples=[
         "sweep examples/crane.mac --grid m=50:500:300 -o runs",
-        'sweep examples/crane.mac --list m=100,200 --keep "max(abs(lambda1))" -o forces',
+        'sweep examples/crane.mac --list m=1,2 --keep "max(lambda1)" -o runs',
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))
