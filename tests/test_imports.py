@@ -67,3 +67,21 @@ def test_every_package_is_installed():
     project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))
     listed = set(project["tool"]["setuptools"]["packages"])
     assert {name for name, path in MODULES.items() if path.name == "__init__.py"} <= listed
+
+
+def test_only_the_crosscheck_differentiates_symbols():
+    """Elsewhere SymPy differentiates the formulas of laws for the book."""
+    found = {
+        name
+        for name, path in MODULES.items()
+        if not name.startswith("holonom.crosscheck.")
+        for call in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(call, ast.Call) and differentiates(call.func)
+    }
+    assert found == {"holonom.companion.expressions"}
+
+
+def differentiates(function: ast.expr) -> bool:
+    """Return True for SymPy's derivatives, by method or by function, but not NumPy's differences."""
+    name = ast.unparse(function)
+    return name.rpartition(".")[2] in {"diff", "Derivative", "jacobian"} and not name.startswith("np.")
