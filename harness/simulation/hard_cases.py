@@ -189,7 +189,7 @@ def _free_directions(at: Matrices) -> Matrix:
     """Return an orthonormal basis, in the mass metric, of the constraints' null space."""
     weighted = weighted_constraints(at.mass, at.jacobian)
     left, values, _ = np.linalg.svd(weighted.directions)
-    return weighted.unweighted(left[:, rank_of(values) :])
+    return weighted.unweighted(left[:, rank_of(values) :].T).T
 
 
 def _change_of_accelerations(at: MotionState, moves: Matrix) -> Matrix:

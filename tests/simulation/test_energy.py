@@ -16,10 +16,7 @@ from holonom.simulation.residuals import condition, residuals
 
 
 def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
-    def multipliers(times, states):
-        return np.array([motion.solution(t, state).multipliers for t, state in zip(times, states.T, strict=True)]).T
-
-    return EnergyBalance(asked, multipliers)
+    return EnergyBalance(asked, lambda times, states: motion.solutions(times, states).multipliers)
 
 
 def simulated(asked, until: float):

@@ -23,7 +23,10 @@ SINGULAR_MASS = 64 * EPSILON  # reciprocal condition number of A, its diagonal o
 
 @dataclass(frozen=True)
 class WeightedConstraints:
-    """The constraints' directions in the mass metric."""
+    """The constraints' directions in the mass metric.
+
+    Of k states, all arrays have a leading axis of length k.
+    """
 
     factor: Matrix  # shape (n, n): L, the Cholesky factor of the metric
     inverse: Matrix  # shape (n, n): L^-1
@@ -53,7 +56,7 @@ class WeightedConstraints:
         -------
         ndarray, shape (n,)
         """
-        return self.inverse @ force
+        return np.matvec(self.inverse, force)
 
     def unweighted(self, z: Vector) -> Vector:
         """Return L^-T z.
@@ -67,7 +70,7 @@ class WeightedConstraints:
         -------
         ndarray, shape (n,)
         """
-        return self.inverse.T @ z
+        return np.vecmat(z, self.inverse)
 
 
 def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
@@ -75,9 +78,9 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 
     Parameters
     ----------
-    mass : ndarray, shape (n, n)
+    mass : ndarray, shape (n, n) or (k, n, n)
         A, symmetric. Positive definite together with the constraints.
-    jacobian : ndarray, shape (g, n)
+    jacobian : ndarray, shape (g, n) or (k, g, n)
         J. Its rows may be dependent, and of any scale.
 
     Returns
@@ -90,19 +93,20 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
         A is singular along a direction that the constraints leave free, or it is indefinite and the constraints do not
         make up for it.
     """
-    peaks = or_one(np.max(np.abs(jacobian), axis=1, initial=0.0))
-    rows = jacobian / peaks[:, None]
+    peaks = or_one(np.max(np.abs(jacobian), axis=-1, initial=0.0))
+    rows = jacobian / peaks[..., None]
     factors, stiffening = _cholesky(mass), None
     if factors is None:
-        stiffening = np.abs(np.diag(mass)).sum() / max(1, len(rows)) * rows.T
-        factors, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks
+        masses = np.abs(np.diagonal(mass, axis1=-2, axis2=-1)).sum(axis=-1)
+        stiffening = masses[..., None, None] / max(1, rows.shape[-2]) * np.matrix_transpose(rows)
+        factors, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks[..., None, :]
     if factors is None:
         masses = np.linalg.eigvalsh(mass)
-        indefinite = masses[0] < -NEGATIVE * np.max(np.abs(masses))
+        indefinite = (masses[..., 0] < -NEGATIVE * np.max(np.abs(masses), axis=-1)).any()
         raise HolonomError(ErrorKind.MASS_INDEFINITE if indefinite else ErrorKind.MASS_SINGULAR)
-    directions = factors[1] @ rows.T
-    lengths = or_one(np.sqrt(np.einsum("sb,sb->b", directions, directions)))
-    return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths, stiffening)
+    directions = factors[1] @ np.matrix_transpose(rows)
+    lengths = or_one(np.sqrt(np.einsum("...sb,...sb->...b", directions, directions)))
+    return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths[..., None, :], stiffening)
 
 
 def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
@@ -143,20 +147,22 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
 
 
 def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
-    """Return L, lower triangular, and its inverse, or None if the metric is singular.
+    """Return L, lower triangular, and its inverse, or None if a metric is singular.
 
     The diagonal of the metric is scaled to one. The last pivot alone does not decide, because the pivots before it can
     first amplify rounding errors.
     """
-    lengths = np.sqrt(or_one(metric.diagonal()))
-    scaled = metric / np.outer(lengths, lengths)
+    lengths = np.sqrt(or_one(np.diagonal(metric, axis1=-2, axis2=-1)))[..., None]
+    scaled = metric / (lengths * np.matrix_transpose(lengths))
     try:
         factor = np.linalg.cholesky(scaled)
         inverse = np.linalg.inv(factor)
     except np.linalg.LinAlgError:
         return None
-    condition = np.prod([np.abs(each).sum(axis=0).max(initial=0.0) for each in (scaled, inverse.T @ inverse)])
-    return (lengths[:, None] * factor, inverse / lengths) if condition * SINGULAR_MASS <= 1 else None
+    squares = scaled, np.matrix_transpose(inverse) @ inverse
+    condition = np.prod([np.abs(each).sum(axis=-2).max(axis=-1, initial=0.0) for each in squares], axis=0)
+    regular = (condition * SINGULAR_MASS <= 1).all()
+    return (lengths * factor, inverse / np.matrix_transpose(lengths)) if regular else None
 
 
 def or_one(lengths: Vector) -> Vector:

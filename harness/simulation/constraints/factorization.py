@@ -22,7 +22,6 @@ coordinates.
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from math import prod
 from typing import Any
 
@@ -239,18 +238,20 @@ class IndependentConstraints(FactoredConstraints):
             return None
 
     def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations and multipliers, refined until changes are rounding errors."""
+        """Return accelerations and multipliers, refined at each state until changes are rounding errors."""
         accelerations, multipliers = self._solved(force, curvature)
-        last = np.inf
+        last, open_ = np.inf, True
         for _ in range(REFINEMENTS):
             missed = force - np.matvec(self._mass, accelerations) + np.vecmat(multipliers, self._jacobian)
             change, further = self._solved(missed, curvature + np.matvec(self._jacobian, accelerations))
-            size = np.max(self.length(change) / or_one(self.length(accelerations)))
-            if not size <= CONTRACTION * last:
+            size = self.length(change) / or_one(self.length(accelerations))
+            open_ = open_ & (size <= CONTRACTION * last)
+            if not np.any(open_):
                 break
-            accelerations, multipliers, last = accelerations + change, multipliers + further, size
-            if size <= ROUNDING:
-                break
+            chosen = np.asarray(open_)[..., None]
+            accelerations = np.where(chosen, accelerations + change, accelerations)
+            multipliers = np.where(chosen, multipliers + further, multipliers)
+            last, open_ = size, open_ & (size > ROUNDING)
         return accelerations, multipliers
 
     def _solved(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
@@ -265,14 +266,15 @@ class IndependentConstraints(FactoredConstraints):
 class DependentConstraints(FactoredConstraints):
     """Dependent constraints, factored by singular values up to the given rank.
 
-    Arguments as for `factored_constraints`, but for one state.
+    Arguments as for `factored_constraints`.
     """
 
     def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
         self._weighted = weighted_constraints(mass, jacobian)
         u, values, v = np.linalg.svd(self._weighted.directions)
-        self._basis, self._complement = u[:, :rank], u[:, rank:]
-        self._inverse = v[:rank] / values[:rank, None]  # shape (r, g): transposed pseudo-inverse of C, W = Q C
+        self._basis, self._complement = u[..., :rank], u[..., rank:]
+        # shape (r, g): transposed pseudo-inverse of C, W = Q C
+        self._inverse = v[..., :rank, :] / values[..., :rank, None]
 
     def length(self, change: Vector) -> Vector:
         """Return the length of a change in the mass metric.
@@ -286,7 +288,7 @@ class DependentConstraints(FactoredConstraints):
         -------
         float
         """
-        return np.linalg.norm(self._weighted.factor.T @ change)
+        return np.linalg.norm(np.vecmat(change, self._weighted.factor), axis=-1)
 
     def distances(self, residual: Vector) -> Vector:
         """Return the distances in the mass metric.
@@ -316,8 +318,9 @@ class DependentConstraints(FactoredConstraints):
         -------
         ndarray, shape (n,)
         """
-        free = self._complement.T @ self._weighted_force(force, curvature)
-        return self._weighted.unweighted(self._basis @ self._along(curvature) + self._complement @ free)
+        free = np.vecmat(self._weighted_force(force, curvature), self._complement)
+        along = np.matvec(self._basis, self._along(curvature))
+        return self._weighted.unweighted(along + np.matvec(self._complement, free))
 
     def correction(self, residual: Vector) -> Vector:
         """Return the least change, which is along Q.
@@ -331,7 +334,7 @@ class DependentConstraints(FactoredConstraints):
         -------
         ndarray, shape (n,)
         """
-        return self._weighted.unweighted(self._basis @ self._along(residual))
+        return self._weighted.unweighted(np.matvec(self._basis, self._along(residual)))
 
     def multipliers(self, force: Vector, curvature: Vector) -> Vector:
         """Return the multipliers without their part in the null space of J^T.
@@ -347,34 +350,19 @@ class DependentConstraints(FactoredConstraints):
         -------
         ndarray, shape (g,)
         """
-        along = self._along(curvature) - self._basis.T @ self._weighted_force(force, curvature)
-        found = self._weighted.scale * (along @ self._inverse)
-        acting = np.linalg.qr((self._inverse / self._weighted.scale).T)[0]
-        return acting @ (acting.T @ found)
+        along = self._along(curvature) - np.vecmat(self._weighted_force(force, curvature), self._basis)
+        found = self._weighted.scale * np.vecmat(along, self._inverse)
+        acting = np.linalg.qr(np.matrix_transpose(self._inverse / self._weighted.scale[..., None, :]))[0]
+        return np.matvec(acting, np.vecmat(found, acting))
 
     def _weighted_force(self, force: Vector, curvature: Vector) -> Vector:
         """Return L^-1 h. If A is singular, h is changed together with A."""
         if self._weighted.stiffening is not None:
-            force = force - self._weighted.stiffening @ curvature
+            force = force - np.matvec(self._weighted.stiffening, curvature)
         return self._weighted.per_root_mass(force)
 
     def _along(self, curvature: Vector) -> Vector:
-        return -(self._inverse @ (self._weighted.scale * curvature))
-
-
-class DependentConstraintsAtEach:
-    """`DependentConstraints` at several states, as of `factored_constraints`."""
-
-    def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
-        self._each = [DependentConstraints(*at, rank) for at in zip(mass, jacobian, strict=True)]
-
-    def __getattr__(self, method: str) -> Callable[..., Vector]:
-        """Return a method of `FactoredConstraints`, applied at each state."""
-
-        def at_each(*sides: Vector) -> Vector:
-            return np.array([getattr(each, method)(*parts) for each, *parts in zip(self._each, *sides, strict=True)])
-
-        return at_each
+        return -np.matvec(self._inverse, self._weighted.scale * curvature)
 
 
 def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None) -> FactoredConstraints:
@@ -402,4 +390,4 @@ def factored_constraints(mass: Matrix, jacobian: Matrix, rank: int | None = None
         rank = rank_of(weighted_constraints(mass, jacobian).singular_values())
     if rank == jacobian.shape[-2]:
         return IndependentConstraints(mass, jacobian)
-    return (DependentConstraints if mass.ndim == 2 else DependentConstraintsAtEach)(mass, jacobian, rank)
+    return DependentConstraints(mass, jacobian, rank)

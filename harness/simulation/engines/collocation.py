@@ -48,21 +48,21 @@ class Collocation:
         places = (2 * np.asarray(times) - self.start - self.end) / (self.end - self.start)
         return np.concatenate([legendre.legval(places, self.coordinates), legendre.legval(places, self.velocities)])
 
-    def accelerations(self, time: float) -> Vector:
-        """Return the accelerations at a given time of the collocation step.
+    def accelerations(self, times: Vector) -> Matrix:
+        """Return the accelerations at times of the collocation step.
 
         Parameters
         ----------
-        time : float
+        times : ndarray, shape (k,)
             Between start and end.
 
         Returns
         -------
-        ndarray, shape (n,)
+        ndarray, shape (n, k)
         """
         half = (self.end - self.start) / 2
-        place = (time - self.start) / half - 1
-        return legendre.legval(place, legendre.legder(self.velocities, scl=1 / half))
+        places = (times - self.start) / half - 1
+        return legendre.legval(places, legendre.legder(self.velocities, scl=1 / half))
 
     def error(self, sizes: Vector) -> float:
         """Return the relative truncation error of the coordinates.

@@ -24,7 +24,7 @@ from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..hard_cases import Difficulty
-from ..matrices import Matrix, MotionMatrices, Vector, start_of
+from ..matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
 from ..request import EngineName
 from .collocation import NODES, Collocation, collocated
 from .engine import Solutions, Step, Task, require_reach
@@ -205,49 +205,39 @@ class RobustEngine:
         -------
         Solutions
         """
-        found = [self.solution(t, state) for t, state in zip(times, states.T, strict=True)]
-        return Solutions(*(np.array(each).T for each in zip(*found, strict=True)))
-
-    def solution(self, t: float, state: Vector) -> Solutions:
-        """Return the unknowns of the equations of motion at one time.
-
-        Parameters
-        ----------
-        t : float
-            Time of the state.
-        state : ndarray, shape (2n,)
-            It satisfies the constraints.
-
-        Returns
-        -------
-        Solutions
-            Vectors of shape (n,), (g,) and (n,).
-        """
-        at = self.matrices(t, state)
+        at = self.matrices(times, states.T)
         singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
-        factored = factored_constraints(at.mass, at.jacobian, min(self.rank, rank_of(singular_values, UNTRUSTED)))
-        collocation = next(
-            (collocation for collocation in self._collocations if collocation.start < t < collocation.end), None
-        )
-        if collocation is None:
-            accelerations = factored.accelerations(at.force, at.curvature)
-            multipliers = factored.multipliers(at.force, at.curvature)
-        else:
-            accelerations = collocation.accelerations(t)
-            multipliers = factored.multipliers(at.force - at.mass @ accelerations, np.zeros_like(at.curvature))
-        forces = at.jacobian.T @ multipliers
-        return Solutions(accelerations, self._as_in_the_program(at.jacobian, multipliers, forces), forces)
+        ranks = np.array([min(self.rank, rank_of(each, UNTRUSTED)) for each in singular_values])
+        accelerations, multipliers = np.empty_like(at.force), np.empty_like(at.curvature)
+        for rank in np.unique(ranks):
+            chosen = ranks == rank
+            here = Matrices(*(each[chosen] for each in at))
+            accelerations[chosen], multipliers[chosen] = self._unknowns(times[chosen], here, rank)
+        forces = np.vecmat(multipliers, at.jacobian)
+        return Solutions(accelerations.T, self._as_in_the_program(at.jacobian, multipliers, forces).T, forces.T)
 
-    def _as_in_the_program(self, jacobian: Matrix, multipliers: Vector, forces: Vector) -> Vector:
-        """Return the multipliers that are zero for redundant constraints.
+    def _unknowns(self, times: Vector, at: Matrices, rank: int) -> tuple[Matrix, Matrix]:
+        """Return accelerations and multipliers at several states."""
+        factored = factored_constraints(at.mass, at.jacobian, rank)
+        accelerations = factored.accelerations(at.force, at.curvature)
+        force, curvature = at.force.copy(), at.curvature.copy()
+        for collocation in self._collocations:
+            inside = (collocation.start < times) & (times < collocation.end)
+            accelerations[inside] = collocation.accelerations(times[inside]).T
+            force[inside] -= np.matvec(at.mass[inside], accelerations[inside])
+            curvature[inside] = 0
+        return accelerations, factored.multipliers(force, curvature)
+
+    def _as_in_the_program(self, jacobian: Matrix, multipliers: Matrix, forces: Matrix) -> Matrix:
+        """Return the multipliers, shape (k, g), that are zero for redundant constraints.
 
         They give the same constraint forces.
         """
         settled = list(self._independent)
-        if len(settled) == len(multipliers):
+        if len(settled) == multipliers.shape[-1]:
             return multipliers
-        chosen = np.zeros_like(multipliers)
-        chosen[settled] = np.linalg.lstsq(jacobian[settled].T, forces)[0]
+        chosen, acting = np.zeros_like(multipliers), np.matrix_transpose(jacobian[:, settled])
+        chosen[:, settled] = np.matvec(np.linalg.pinv(acting, rtol=EPSILON * max(acting.shape[1:])), forces)
         return chosen
 
     @property
