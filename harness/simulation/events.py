@@ -4,7 +4,7 @@ They are examined part by part, like switching functions (`zeros.py`), through t
 integrated to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 ZERO = 1e-12  # of an expression at the initial time, relative to its size in the first step: it has no sign
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
+
+Values = Callable[[Numbers, Numbers], Numbers]
 
 
 class Ending(NamedTuple):
@@ -61,11 +63,41 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     for step in motion.integrate(end):
         if step.mode not in events:
             problem = step.mode.problem
-            events[step.mode] = Events(problem.until, problem.events, step.mode, precision, span)
+            events[step.mode] = Events(problem.until, values_in(step.mode, problem.events, precision), precision, span)
         found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found
     return None
+
+
+def values_in(mode: "Mode", program: Program, precision: Precision) -> Values:
+    """Return the values of a program's outputs along a mode of a motion.
+
+    Parameters
+    ----------
+    mode : Mode
+        The mode.
+    program : Program
+        Expressions of time, state and multipliers.
+    precision : Precision
+        Numbers of the motion.
+
+    Returns
+    -------
+    callable
+        Takes times, shape (k,), and states, shape (2n, k), to values, shape (outputs, k).
+    """
+    problem = mode.problem
+    inputs, evaluate = Inputs(problem, precision), evaluation_once(problem, program, precision)
+    used = set().union(*(names_in(value) for _, value in program.assignments))
+    used |= set().union(*map(names_in, program.outputs.values()))
+    solutions = mode.engine.solutions if used & set(problem.multipliers) else None
+
+    def values(times: Numbers, states: Numbers) -> Numbers:
+        multipliers = None if solutions is None else solutions(times, states).multipliers
+        return np.array([as_floats(row) for row in evaluate(inputs(times, states, multipliers))])
+
+    return values
 
 
 class Events(SignedFunctions):
@@ -75,22 +107,17 @@ class Events(SignedFunctions):
     ----------
     names : sequence of str
         The expressions, as Maxima prints them.
-    program : Program
-        Their values, in the order of the names.
-    mode : Mode
-        The mode.
+    evaluate : callable
+        Their values in the mode, in the order of the names, as `values_in` returns them.
+    precision : Precision
+        Numbers of the motion.
     span : float
         The time span.
     """
 
-    def __init__(self, names: Sequence[str], program: Program, mode: "Mode", precision: Precision, span: float) -> None:
+    def __init__(self, names: Sequence[str], evaluate: Values, precision: Precision, span: float) -> None:
         super().__init__(precision, span)
-        problem = mode.problem
-        self._names, self._inputs = names, Inputs(problem, precision)
-        used = set().union(*(names_in(value) for _, value in program.assignments))
-        used |= set().union(*map(names_in, program.outputs.values()))
-        self._solutions = mode.engine.solutions if used & set(problem.multipliers) else None
-        self._evaluate = evaluation_once(problem, program, precision)
+        self._names, self._evaluate = names, evaluate
 
     def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
         """Return the first crossing within a step.
@@ -177,7 +204,6 @@ class Events(SignedFunctions):
         -------
         ndarray, shape (expressions, l)
         """
-        multipliers = None if self._solutions is None else self._solutions(times, states).multipliers
-        found = np.array([as_floats(row) for row in self._evaluate(self._inputs(times, states, multipliers))])
         places = [self._names.index(name) for name, *_ in self._rows]
-        return np.array([side for *_, side in self._rows], dtype=float)[:, None] * found[places]
+        sides = np.array([side for *_, side in self._rows], dtype=float)
+        return sides[:, None] * self._evaluate(times, states)[places]

@@ -46,7 +46,7 @@ from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
-from .events import Events
+from .events import Events, values_in
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import UNIQUE, Mode
@@ -280,7 +280,8 @@ class HybridMotion:
             return None
         if mode not in self._conditions:
             names = [each.of for each in released]
-            self._conditions[mode] = Events(names, mode.problem.releases, mode, self._precision, self._span)
+            conditions = values_in(mode, mode.problem.releases, self._precision)
+            self._conditions[mode] = Events(names, conditions, self._precision, self._span)
         return self._conditions[mode].first_event(step, self._sides)
 
     def _release(self, crossing: Crossing, step: Step) -> None:

@@ -25,7 +25,7 @@ from ..simulation.constraints.program_projection import distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
 from ..simulation.evaluation import batch_evaluation, in_full_vectors
 from ..simulation.nominal import nominal_of
-from .extremes import RESOLVED, Steps
+from .extremes import Steps
 from .quantities import along_motion, expressions_of
 
 ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
@@ -86,11 +86,10 @@ class BatchEngine:
     along : sequence of Expression
         Quantities to look at along the motion.
     look : callable
-        Makes numbers of these, given step by step: shape (numbers, elements).
+        Makes numbers of these, given step by step: shape (numbers, elements). Motions with one that is infinite have
+        not arrived.
     elements : int or None
         Of a batch, 2 or more, or None for the number that is fastest.
-    resolved : float
-        As for `Steps.resolved`: other motions have not arrived.
     """
 
     def __init__(
@@ -101,13 +100,11 @@ class BatchEngine:
         along: Sequence[Expression],
         look: Look,
         elements: int | None = None,
-        resolved: float = RESOLVED,
     ) -> None:
         heyoka = import_heyoka()
         self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
         elements = self._elements = elements or (ELEMENTS_WITH_CALLBACK if along else ELEMENTS)
         self._along, self._look, self._size = len(along), look, len(problem.state)
-        self._resolved = resolved
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
         program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
@@ -165,7 +162,7 @@ class BatchEngine:
             found[:, :, here], arrived[here], shortest[here], taken[here], steps = batch
             if self._along:
                 seen.append(self._look(steps))
-                arrived[here] &= np.logical_and.reduce([each.resolved(self._resolved) for each in steps])
+                arrived[here] &= ~np.isinf(seen[-1]).any(axis=0)
         reached = self._on_constraints(found[:, : self._size], values, stops, arrived)
         works, squares = np.moveaxis(found[:, self._size :], 1, 0) / SMALL
         gained = np.array([self._energies(*at, values) for at in zip(stops, reached, strict=True)]) - begun

@@ -19,8 +19,8 @@ from ..simulation.events import ZERO
 from .polynomials import half_of, peak_of, root_of, sizes_of, values_at
 
 SAMPLES = 17  # of a step
-LAST, RESOLVED = 2, 1e-6  # coefficients of a step, and what they are of the largest where the polynomial is near
-PLACED = 1e-10  # the same where the place of a zero ends the motion
+LAST, RESOLVED = 2, 1e-10  # coefficients of a step, and what they are of the largest where the polynomial is near
+PLACED = 1e-10  # of a step: how far rounding may move a zero
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 ROUNDING = 1e-13  # of the largest value that may be: no sign
 HALVINGS = 60  # of a step; below that numbers are too coarse to distinguish its parts
@@ -46,20 +46,36 @@ class Steps(NamedTuple):
         """
         return self._replace(coefficients=-self.coefficients)
 
-    def resolved(self, share: float = RESOLVED) -> NDArray[np.bool_]:
-        """Return True for elements whose polynomials have small last coefficients.
+    def resolved(self, least: float | Floats = 0.0) -> NDArray[np.bool_]:
+        """Return True for elements with a quantity resolved relative to its largest size.
 
         Parameters
         ----------
-        share : float
-            What they are of the largest at most.
+        least : float or ndarray, shape (elements,)
+            A size beside which smaller ones do not count.
 
         Returns
         -------
         ndarray of bool, shape (elements,)
         """
         sizes = np.abs(self.coefficients)
-        return sizes[-LAST:].max(axis=(0, 1)) <= share * sizes.max(axis=(0, 1))
+        return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * np.maximum(sizes.max(axis=(0, 1)), least)
+
+    def resolved_until(self, times: Floats) -> NDArray[np.bool_]:
+        """Return True for elements with a quantity resolved in each step by itself.
+
+        Parameters
+        ----------
+        times : ndarray, shape (elements,)
+            Steps that begin later do not count. nan counts all steps.
+
+        Returns
+        -------
+        ndarray of bool, shape (elements,)
+        """
+        sizes = np.abs(self.coefficients)
+        later = self.middle + self.least * self.length > times
+        return (later | (sizes[-LAST:].max(axis=0) <= RESOLVED * sizes.max(axis=0))).all(axis=0)
 
     def of(self, elements: Any) -> "Steps":
         """Return some of the elements.
@@ -120,25 +136,36 @@ def first_zero(steps: Steps) -> Floats:
     Returns
     -------
     ndarray, shape (elements,)
+        inf where rounding decides: it moves the zero, or the quantity has been so large that its sign is rounding.
     """
     sizes = np.abs(steps.coefficients[0]) + _bounds(steps.coefficients)[0]
-    rounding = ROUNDING * np.max(sizes, axis=0)
-    parts = _without_turns(steps, rounding)
-    begun = np.searchsorted(parts.element, np.arange(len(rounding)))  # the first part of each element
-    small = np.repeat(rounding[parts.element, None], 2, axis=1)
-    small[begun, 0] = np.maximum(small[begun, 0], ZERO * sizes[0])
+    parts = _without_turns(steps, ROUNDING * sizes)
+    found = _first_crossing(steps, parts, ROUNDING * sizes)
+    of_largest = _first_crossing(steps, parts, ROUNDING * np.maximum.accumulate(sizes))
+    return np.where((found == of_largest) | (np.isnan(found) & np.isnan(of_largest)), found, np.inf)
+
+
+def _first_crossing(steps: Steps, parts: "_Parts", rounding: Floats) -> Floats:
+    """Return the time of the first sign change for each element.
+
+    What is smaller than rounding, shape (steps, elements), has no sign.
+    """
+    begun = np.searchsorted(parts.element, np.arange(rounding.shape[1]))  # the first part of each element
+    small = np.repeat(rounding[parts.step, parts.element, None], 2, axis=1)
+    small[begun, 0] *= ZERO / ROUNDING
     values = _values(parts.coefficients, (-1.0, 1.0)).T
     signs = np.where(np.abs(values) > small, np.sign(values), 0.0).ravel()
     latest = np.maximum.accumulate(np.where(signs != 0, np.arange(len(signs)), -1))
     before = np.concatenate([[-1], latest[:-1]])
     crossed = np.flatnonzero((before >= 2 * begun[parts.element].repeat(2)) & (signs * signs[before] < 0))
-    elements, first = np.unique(parts.element[crossed // 2], return_index=True)
+    there, first = np.unique(parts.element[crossed // 2], return_index=True)
     crossing, inside = parts.of(crossed[first] // 2), signs[crossed[first] - 1] * (crossed[first] % 2) != 0
-    ends = np.repeat([[-1.0], [1.0]], len(elements), axis=1)
-    (root,) = root_of(len(steps.coefficients))(np.concatenate([crossing.coefficients, ends]))
-    found, at = np.full(len(rounding), np.nan), (crossing.step, elements)
+    ends = np.repeat([[-1.0], [1.0]], len(there), axis=1)
+    given = np.concatenate([crossing.coefficients, ends, small[crossed[first] // 2, 1:].T])
+    root, off = root_of(len(steps.coefficients))(given)
+    found, at = np.full(rounding.shape[1], np.nan), (crossing.step, there)
     place = crossing.middle + np.where(inside, root, -1.0) * crossing.half
-    found[elements] = steps.middle[at] + place * steps.length[at]
+    found[there] = np.where(off * crossing.half <= PLACED, steps.middle[at] + place * steps.length[at], np.inf)
     return found
 
 
@@ -165,7 +192,7 @@ class _Parts(NamedTuple):
 def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
     """Return parts in which a quantity has one sign, is monotonic or is only rounding.
 
-    Each element has its own parts.
+    Each element has its own parts. Rounding has the shape (steps, elements).
     """
     powers, *shape = steps.coefficients.shape
     step, element = np.indices(shape).reshape(2, -1)
@@ -176,7 +203,7 @@ def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
     for _ in range(HALVINGS):
         reach, turns = _bounds(waiting.coefficients)
         size = np.abs(waiting.coefficients[0])
-        open_ = turns & (size <= reach) & (size + reach > rounding[waiting.element])
+        open_ = turns & (size <= reach) & (size + reach > rounding[waiting.step, waiting.element])
         found.append(waiting.of(~open_))
         if not open_.any():
             break
@@ -198,14 +225,14 @@ def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
     found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
     reach, turns = _bounds(polynomials)
     step, element = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
-    chosen = polynomials[:, step, element]
-    values = _values(chosen, places)
-    best = np.argmax(size(values), axis=0)
-    at_best = np.take_along_axis(values, best[None], axis=0)[0]
+    values = _values(polynomials[:, step, element], places)
+    sizes = np.pad(size(values), ((1, 1), (0, 0)), constant_values=-np.inf)
+    best, chosen = np.nonzero((sizes[1:-1] >= sizes[:-2]) & (sizes[1:-1] >= sizes[2:]))
+    at_best = values[best, chosen]
     sign = np.where(size(at_best) == at_best, 1.0, -1.0)
     near = np.array(places)[[best, np.maximum(best - 1, 0), np.minimum(best + 1, SAMPLES - 1)]]
-    (peak,) = peak_of(len(polynomials))(np.concatenate([chosen * sign, near]))
-    np.maximum.at(found, element, peak)
+    (peak,) = peak_of(len(polynomials))(np.concatenate([polynomials[:, step[chosen], element[chosen]] * sign, near]))
+    np.maximum.at(found, element[chosen], peak)
     return found
 
 

@@ -55,7 +55,8 @@ class Kind(StrEnum):
     RESIDUAL = "residual"
 
 
-ALONG = (Kind.MAX, Kind.MIN, Kind.LARGEST, Kind.MEAN, Kind.ZERO)
+EXTREMES = (Kind.MAX, Kind.MIN, Kind.LARGEST, Kind.MEAN)
+ALONG = (*EXTREMES, Kind.ZERO)
 WHOLE = {kind.value: kind for kind in (Kind.FINAL, Kind.FREE, Kind.RADIUS, Kind.RESIDUAL)}
 
 

@@ -110,9 +110,10 @@ def peak_of(powers: int) -> Evaluation:
 
 @lru_cache(DIFFERENT)
 def root_of(powers: int) -> Evaluation:
-    """Compile the zero between two places of opposite signs, the last two rows.
+    """Compile the zero between two places of opposite signs.
 
-    The method is Newton's, with bisection if a step leaves the interval that contains the zero.
+    The method is Newton's, with bisection if a step leaves the interval that contains the zero. The last three rows are
+    the places and the rounding of a value.
 
     Parameters
     ----------
@@ -122,10 +123,10 @@ def root_of(powers: int) -> Evaluation:
     Returns
     -------
     Evaluation
-        Function with one result, the place x.
+        Function with two results: the place x, and how far the zero may be from there.
     """
     heyoka, polynomial = import_heyoka(), _coefficients(powers)
-    low, high = given = heyoka.make_vars("low", "high")
+    low, high, rounding = given = heyoka.make_vars("low", "high", "rounding")
     here, beyond, slope = (low + high) / _number(2.0), _value(polynomial, high), _slope(polynomial)
     for _ in range(3 * NEWTON):
         value = _value(polynomial, here)
@@ -134,7 +135,8 @@ def root_of(powers: int) -> Evaluation:
         moved = here - value / _value(slope, here)
         inside = heyoka.logical_and([heyoka.gte(moved, low), heyoka.lte(moved, high)])
         here = heyoka.select(inside, moved, (low + high) / _number(2.0))
-    return _compiled([here], [*polynomial, *given])
+    off = (_size(_value(polynomial, here)) + rounding) / _size(_value(slope, here))
+    return _compiled([here, off], [*polynomial, *given])
 
 
 def _coefficients(powers: int) -> list[Any]:

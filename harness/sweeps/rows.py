@@ -3,7 +3,7 @@
 A row that cannot be computed gives the reason. All rows are written.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -31,8 +31,8 @@ from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
-from .extremes import PLACED, RESOLVED, Steps, first_zero, largest, largest_size
-from .outputs import ALONG, Kind, OutputQuantity
+from .extremes import Steps, first_zero, largest, largest_size
+from .outputs import ALONG, EXTREMES, Kind, OutputQuantity
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .request import TOLERANCE
 from .series import batch_radii
@@ -96,10 +96,13 @@ class RowMaker:
         self._end = float(last_time(problem, plan.until, read_precision("double"))) if self._moves else self._start
         self._asked = sorted({self._end, *(self._time(output) for output in plan.outputs if output.kind is Kind.AT)})
         self._points = [output.quantity for output in plan.outputs if output.kind is Kind.AT]
-        self._looks = [output for output in plan.outputs if output.kind in ALONG]
+        self._extremes = [output for output in plan.outputs if output.kind in EXTREMES]
+        self._zeros = [output for output in plan.outputs if output.kind is Kind.ZERO]
         free = any(output.kind is Kind.FREE for output in plan.outputs)
         self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
-        self._along: list[Expression] = [*(output.quantity for output in self._looks), *self._free[0], *self._free[1]]
+        self._along = [*(output.quantity for output in self._extremes), *self._free[0], *self._free[1]]
+        self._crossing = [output.quantity for output in self._zeros]
+        self._seen_outputs = [*self._extremes, *(each for each in plan.outputs if each.kind is Kind.FREE), *self._zeros]
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
@@ -238,7 +241,11 @@ class RowMaker:
             rows.mark(here, Status.INACCURATE, "; ".join(violation.reason for violation in report.violations))
         points = {stop: found.points[place][:, None] for place, stop in enumerate(self._asked)}
         self._keep(rows, here, np.array([report.t]), found.state[:, None], points)
-        self._keep_along(rows, here, self._seen(found.steps))
+        made = list(self._numbers(found.steps))
+        for output, (number, resolved) in zip(self._seen_outputs, made, strict=False):
+            if np.isfinite(number) and not resolved:
+                rows.mark(here, Status.INACCURATE, f"{output.text} changes too fast along the motion")
+        self._keep_along(rows, here, [*(number for number, _ in made), *found.zeros[:, None]])
         for output in self._derivatives:
             number = report.sensitivities[derivative_name(output.quantity.text, output.direction)]
             rows.record(output.text, here, np.array([number]), there_is=True)
@@ -259,40 +266,31 @@ class RowMaker:
                 rows.record(output.text, there, points[self._time(output)][place], there_is=reached)
                 place += 1
 
-    def _keep_along(self, rows: "_Rows", there: NDArray, seen: Floats) -> None:
-        """Record numbers of quantities along the motion, shape (numbers, k)."""
-        for output, numbers in zip(self._looks, seen, strict=False):
+    def _keep_along(self, rows: "_Rows", there: NDArray, seen: Sequence[Floats]) -> None:
+        """Record numbers of quantities along the motion, each of shape (k,)."""
+        for output, numbers in zip(self._seen_outputs, seen, strict=True):
             rows.record(output.text, there, numbers, there_is=(output.kind is not Kind.ZERO) | ~np.isnan(numbers))
-        if any(self._free):
-            rows.columns[str(Kind.FREE)][there] = seen[-1]
 
-    def _seen(self, steps: list[Steps]) -> Floats:
-        """Return the numbers made of quantities along motions, shape (numbers, elements).
+    def _look(self, steps: list[Steps]) -> Floats:
+        """Return the numbers made of quantities, infinite if polynomials do not decide."""
+        made = [np.where(resolved, number, np.inf) for number, resolved in self._numbers(steps[: len(self._along)])]
+        return np.array([*made, *(_zero(along) for along in steps[len(self._along) :])])
 
-        The last is 1 if they are free.
+    def _numbers(self, steps: list[Steps]) -> Iterator[tuple[Floats, NDArray[np.bool_]]]:
+        """Yield the largest, least and mean values, each with True where it is resolved.
+
+        Both have the shape (elements,). Last comes 1 for free motions.
         """
-        looks, fields = steps[: len(self._looks)], steps[len(self._looks) :]
-        made = [self._made(output.kind, along) for output, along in zip(self._looks, looks, strict=True)]
+        looks, fields = steps[: len(self._extremes)], steps[len(self._extremes) :]
+        for output, along in zip(self._extremes, looks, strict=True):
+            yield _made(output.kind, along), along.resolved()
         if fields:
             sizes = [largest_size(along) for along in fields]
             reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
             forces = np.max(others, axis=0, initial=0.0)
-            least = MARGIN * self.plan.tol * np.where(forces > 0, forces, 1.0)
-            made.append((np.max(reactions, axis=0, initial=0.0) <= least).astype(float))
-        return np.array(made)
-
-    def _made(self, kind: Kind, along: Steps) -> Floats:
-        match kind:
-            case Kind.MAX:
-                return largest(along)
-            case Kind.MIN:
-                return -largest(along.negative())
-            case Kind.LARGEST:
-                return largest_size(along)
-            case Kind.ZERO:
-                return np.where(np.isfinite(along.coefficients).all(axis=(0, 1)), first_zero(along), np.inf)
-            case _:
-                return _mean(along)
+            forces = np.where(forces > 0, forces, 1.0)
+            free = np.max(reactions, axis=0, initial=0.0) <= MARGIN * self.plan.tol * forces
+            yield free.astype(float), np.all([along.resolved(forces) for along in fields], axis=0)
 
     def _time(self, output: OutputQuantity) -> float:
         """Return the time at which to evaluate a quantity.
@@ -340,16 +338,16 @@ class RowMaker:
 
     @cached_property
     def _engine(self) -> BatchEngine:
-        return self._looking_at(self._along, self._seen)
+        return self._looking_at([*self._along, *self._crossing], self._look)
 
     @cached_property
     def _ending_engine(self) -> BatchEngine:
         events = [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
-        return self._looking_at(events, lambda steps: np.array([first_zero(along) for along in steps]), PLACED)
+        return self._looking_at(events, lambda steps: np.array([_zero(along) for along in steps]))
 
-    def _looking_at(self, along: Sequence[Expression], look: Look, resolved: float = RESOLVED) -> BatchEngine:
+    def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION
-        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements, resolved)
+        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
 
     @cached_property
     def _evaluate(self) -> "NDArray":
@@ -364,7 +362,7 @@ class RowMaker:
         request = SimulationRequest(
             tol=self.plan.tol, stabilization=self.plan.stabilization, until=self.plan.until, sensitivities=directions
         )
-        return SingleMotions(self._problem, request, self._along, self._points)
+        return SingleMotions(self._problem, request, self._along, self._crossing, self._points)
 
     @cached_property
     def _watch(self) -> TimeWatch:
@@ -433,6 +431,26 @@ class _Rows:
     def mark(self, rows: NDArray, status: Status, note: str) -> None:
         """Set the status and the note of rows."""
         self.statuses[rows], self.notes[rows] = list(Status).index(status), note
+
+
+def _made(kind: Kind, along: Steps) -> Floats:
+    """Return the largest, least or mean value of a quantity for each element."""
+    match kind:
+        case Kind.MAX:
+            return largest(along)
+        case Kind.MIN:
+            return -largest(along.negative())
+        case Kind.LARGEST:
+            return largest_size(along)
+        case _:
+            return _mean(along)
+
+
+def _zero(along: Steps) -> Floats:
+    """Return the first zero of a quantity, infinite if polynomials do not decide."""
+    finite = np.isfinite(along.coefficients).all(axis=(0, 1))
+    found = np.where(finite, first_zero(along), np.inf)
+    return np.where(along.resolved_until(found), found, np.inf)
 
 
 def _mean(along: Steps) -> Floats:

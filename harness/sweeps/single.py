@@ -12,20 +12,24 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
+from ..failures import HolonomError
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Expression
+from ..program.precision import read_precision
 from ..simulation.engines.engine import Step
 from ..simulation.evaluation import in_full_vectors
+from ..simulation.events import Events
 from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
 from ..simulation.simulate import integrate
-from .extremes import Steps
+from .extremes import LAST, RESOLVED, Steps
 from .quantities import expressions_of, observed_names, solved_names
 
-PARTS, MOST_PARTS, FINER = 4, 4096, 4  # of a step, each with a polynomial of its own; that are tried next
+PARTS, MOST_PARTS = 4, 4096  # of a step, each with a polynomial of its own, and of a part that is too long; at most
 NODES = -np.cos(np.pi * (np.arange(9) + 0.5) / 9)  # of Chebyshev
+DOUBLE = read_precision("double")
 TO_POWERS = np.linalg.inv(polynomial.polyvander(NODES, len(NODES) - 1))
 
 Floats = NDArray[np.float64]
@@ -36,8 +40,8 @@ class SingleMotions:
 
     Parameters
     ----------
-    along, points : sequence of Expression
-        Quantities to look at along the motion, and at the times asked for.
+    along, zeros, points : sequence of Expression
+        Quantities to look at along the motion, to find the first zero of, and to keep at the times asked for.
     """
 
     def __init__(
@@ -45,9 +49,10 @@ class SingleMotions:
         problem: MotionProblem,
         request: SimulationRequest,
         along: Sequence[Expression],
+        zeros: Sequence[Expression],
         points: Sequence[Expression],
     ) -> None:
-        self._request, self._along = request, len(along)
+        self._request, self._counts = request, (len(along), len(zeros))
         heyoka = import_heyoka()
         n, g = len(problem.coordinates), len(problem.multipliers)
         self._solved = len(solved_names(problem))
@@ -57,7 +62,7 @@ class SingleMotions:
         names = ["t", *problem.state, *solved, "energy", *observed, *fields, *problem.parameters]
         inputs = [heyoka.expression(f"x{place}") for place in range(len(names))]
         known = dict(zip(names, inputs, strict=True))  # ddot(u) may be among the accelerations and the controls
-        quantities = expressions_of([*along, *points], known) if along or points else []
+        quantities = expressions_of([*along, *zeros, *points], known) if along or zeros or points else []
         self._quantities = in_full_vectors(heyoka.cfunc(quantities, vars=inputs, opt_level=0)) if quantities else None
 
     def integrate(self, problem: MotionProblem, stops: Sequence[float]) -> "SingleMotion":
@@ -68,7 +73,7 @@ class SingleMotions:
         problem : MotionProblem
             The motion, with a number for each parameter.
         stops : sequence of float
-            Times at which to evaluate the points, in the scene's unit.
+            Times at which to evaluate the points, in the scene's unit. The last is the end.
 
         Returns
         -------
@@ -79,7 +84,8 @@ class SingleMotions:
         HolonomError
             The motion cannot be continued to the end.
         """
-        look = _Look(partial(self._values, problem), self._along, stops)
+        span = stops[-1] - float(problem.start["t"])
+        look = _Look(partial(self._values, problem), *self._counts, stops, span)
         report = integrate(problem, self._request, lambda samples: None, watch=look.take)
         return look.motion(report)
 
@@ -105,51 +111,84 @@ class SingleMotion(NamedTuple):
     state: Floats  # shape (2n,): the last one
     points: Floats  # shape (stops, quantities): at the times asked for; after the end, as they are there
     steps: list[Steps]  # each quantity along the motion, with one element
+    zeros: Floats  # shape (zeros,): the first time of each, nan without one, inf where it has no value before
 
 
 class _Look:
     """Looks at quantities along a motion, step by step, and records states at stops."""
 
-    def __init__(self, values: Callable[[Mode, Floats, Floats], Floats], along: int, stops: Sequence[float]) -> None:
-        self._values, self._along, self._stops = values, along, stops
+    def __init__(
+        self,
+        values: Callable[[Mode, Floats, Floats], Floats],
+        along: int,
+        zeros: int,
+        stops: Sequence[float],
+        span: float,
+    ) -> None:
+        self._values, self._along, self._stops, self._span = values, along, stops, span
+        self._zeros, self._sides = np.full(zeros, np.nan), [{} for _ in range(zeros)]
         self._taken: list[tuple] = []
         self._points: dict[float, Floats] = {}
-        self._reached = -np.inf
+        self._reached, self._mode = -np.inf, None
 
     def take(self, step: Step) -> None:
         """Look at a step."""
+        if self._mode is not step.mode:
+            self._mode, self._events = step.mode, [self._crossings(step.mode, k) for k in range(len(self._zeros))]
         if self._along:
             self._taken += self._polynomials(step)
+        for place in np.flatnonzero(np.isnan(self._zeros)):
+            try:
+                found = self._events[place].first_event(step, self._sides[place])
+            except HolonomError:
+                self._zeros[place] = np.inf
+            else:
+                self._zeros[place] = np.nan if found is None else found.t
         here = np.array([stop for stop in self._stops if self._reached < stop <= step.end])
         if len(here):
-            self._points |= zip(here, self._values(step.mode, here, step.states(here))[self._along :].T, strict=True)
-        self._reached, self._mode = step.end, step.mode
+            self._points |= zip(here, self._kept(here, step.states(here)).T, strict=True)
+        self._reached = step.end
 
     def motion(self, report: Report) -> SingleMotion:
         """Return the result of the motion."""
         end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
-        last = self._values(self._mode, np.array([end]), state[:, None])[self._along :, 0]
+        last = self._kept(np.array([end]), state[:, None])[:, 0]
         points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
-        return SingleMotion(report, state, points, _steps(self._taken))
+        return SingleMotion(report, state, points, _steps(self._taken), self._zeros)
+
+    def _kept(self, times: Floats, states: Floats) -> Floats:
+        return self._values(self._mode, times, states)[self._along + len(self._zeros) :]
+
+    def _crossings(self, mode: Mode, place: int) -> Events:
+        """Return the zeros of a quantity in a mode."""
+        row = [self._along + place]
+        return Events([str(place)], lambda times, states: self._values(mode, times, states)[row], DOUBLE, self._span)
 
     def _polynomials(self, step: Step) -> list[tuple]:
         """Return the quantities on parts of a step so short that coefficients fall off.
 
         Middle, half length, coefficients.
         """
-        count, found = PARTS, self._in_parts(step, PARTS)
-        while count < MOST_PARTS and not all(each.resolved().all() for each in _steps(found)):
-            count *= FINER
-            found = self._in_parts(step, count)
+        half = float(step.end - step.start) / 2 / PARTS
+        middles, count = float(step.start) + half * np.arange(1, 2 * PARTS, 2), 0
+        found, sizes = [], np.zeros((self._along, 1))
+        while len(middles):
+            coefficients = self._in_parts(step, middles, half)
+            sizes = np.maximum(sizes, np.abs(coefficients[..., 0]).max(axis=1)[:, None])  # of values
+            coarse = (np.abs(coefficients[..., -LAST:]).max(axis=2) > RESOLVED * sizes).any(axis=0)
+            count += len(middles)
+            coarse &= count + PARTS * coarse.sum() <= MOST_PARTS
+            fine = np.moveaxis(coefficients, 1, 0)[~coarse]
+            found += zip(middles[~coarse], np.full(len(fine), half), fine, strict=True)
+            half /= PARTS
+            middles = (middles[coarse, None] + half * np.arange(1 - PARTS, PARTS, 2)).ravel()
         return found
 
-    def _in_parts(self, step: Step, count: int) -> list[tuple]:
-        edges = np.linspace(float(step.start), float(step.end), count + 1)
-        middles, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
-        times = (middles[:, None] + half[:, None] * NODES).ravel()
+    def _in_parts(self, step: Step, middles: Floats, half: float) -> Floats:
+        """Return coefficients on parts of a step, shape (quantities, parts, powers)."""
+        times = (middles[:, None] + half * NODES).ravel()
         values = self._values(step.mode, times, step.states(times))[: self._along]
-        parts = values.reshape(self._along, count, len(NODES)) @ TO_POWERS.T
-        return list(zip(middles, half, np.moveaxis(parts, 1, 0), strict=True))
+        return values.reshape(self._along, len(middles), len(NODES)) @ TO_POWERS.T
 
 
 def _steps(taken: list[tuple]) -> list[Steps]:
