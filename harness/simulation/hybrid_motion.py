@@ -238,12 +238,11 @@ class HybridMotion:
     # ---- steps ----
 
     def _next_stop(self, until: Any) -> Any:
-        stops, step = self.mode.stops, self._request.max_step
+        stops = self.mode.stops
         known_times = [self._precision.ratio(t) for t in islice(self._to_come, 1)] + [t for t, _ in self._knots[-1:]]
         next_stop = bisect_right(stops, float(self.time))
         ahead = stops[next_stop : next_stop + 1]
-        limits = [self.time + self._precision.number(repr(step))] if step is not None else []
-        return min([until, *limits, *known_times, *(self._precision.number(repr(t)) for t in ahead)])
+        return min([until, *known_times, *(self._precision.number(repr(t)) for t in ahead)])
 
     def _pass_knots(self) -> None:
         """Continue at a knot of a law, which is continuous up to its second derivative."""

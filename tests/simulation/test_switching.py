@@ -8,7 +8,7 @@ import math
 import sys
 from fractions import Fraction
 from functools import cache
-from itertools import count
+from itertools import count, pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -290,10 +290,20 @@ def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, time, 
     assert stopped.value.detail.split(",")[0] == time
 
 
-def test_no_step_is_longer_than_asked_for():
+@pytest.mark.parametrize("precision", ["double", "quadruple"])
+@pytest.mark.parametrize("engine", ENGINES)
+def test_no_step_is_longer_than_asked_for(engine, precision):
+    """Truth: sin(t)."""
+    if precision != "double" and engine is not EngineName.TAYLOR:
+        return
     problem = mass(force="-x", v="1")
-    motion = simulate(problem, SimulationRequest(max_step=0.01))
-    assert max(later - earlier for earlier, later in zip(motion.times, motion.times[1:], strict=False)) < 0.0101
+    motion = simulate(problem, SimulationRequest(max_step=0.01, engine=engine, precision=precision))
+    t = motion.times
+    assert max(later - earlier for earlier, later in pairwise(t)) < 0.010001
+    assert len(t) == motion.report.steps + 1
+    assert float(motion.coordinates["x"][-1]) == pytest.approx(np.sin(float(t[-1])), abs=1e-9)
+    alone = simulate(problem, SimulationRequest(max_step=0.01, engine=engine, samples=0)).report
+    assert alone.steps == len(t) - 1
 
 
 def test_a_motion_of_one_analytic_part_ends_with_its_time():

@@ -30,7 +30,7 @@ struct follower {
 };
 
 long evaluations;
-static double tolerance;
+static double tolerance, longest_step;
 static double nominal_time, nominal[STATE];       /* sizes that the tolerance is relative to, too                   */
 static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
@@ -179,7 +179,7 @@ static int take_step(double t, double h, double *y, const double *k1, double *k1
 static double go_on(double *t, double until, double *length, double *y, double (*dense)[STATE])
 {
     const double begun = *t;
-    double h = *length, before[STATE], after[STATE];
+    double h = fmin(*length, longest_step), before[STATE], after[STATE];
     memcpy(before, y, sizeof before);
     if (!slope_known && rates(begun, y, slope)) return 0;
     for (;;) {
@@ -200,9 +200,10 @@ static double go_on(double *t, double until, double *length, double *y, double (
     }
 }
 
-void begin(double relative_tolerance, double time, const double *sizes)
+void begin(double relative_tolerance, double bound, double time, const double *sizes)
 {
     tolerance = relative_tolerance;
+    longest_step = bound;
     nominal_time = time;
     memcpy(nominal, sizes, sizeof nominal);
 }

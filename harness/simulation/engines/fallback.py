@@ -202,7 +202,8 @@ class FallbackEngine:
         """Return the engine that continues if the first one fails."""
         if self._second is None:
             problem, request, _, _, matrices = self._task
-            self._second = engine_class(FALLBACK)(problem, FINE if request.tol is None else request.tol, matrices)
+            tol = FINE if request.tol is None else request.tol
+            self._second = engine_class(FALLBACK)(problem, tol, matrices, request.max_step)
         return self._second
 
     @property

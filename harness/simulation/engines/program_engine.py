@@ -8,7 +8,7 @@ is regular there. After an obstruction the next one may be near, so the first st
 
 import time
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from math import isfinite
 from typing import Any, Protocol
@@ -52,7 +52,7 @@ class Integrator(Protocol):
     state: Numbers  # shape (2n,): at that time, in place
     tol: Any
 
-    def propagate_until(self, until: Any, max_steps: int) -> tuple[Any, ...]:
+    def propagate_until(self, until: Any, max_steps: int, **bound: Any) -> tuple[Any, ...]:
         """Take steps to a time, up to a number of steps, or to a failure.
 
         A step that is cut at the last time counts neither as the shortest nor as the longest.
@@ -63,6 +63,8 @@ class Integrator(Protocol):
             Last time.
         max_steps : int
             Largest number of steps.
+        **bound : object
+            Of the length of a step, as the integrator takes it.
 
         Returns
         -------
@@ -91,6 +93,7 @@ class ProgramEngine:
     code: str = ""
     compile_seconds: float
     _integrator: Integrator
+    _bound: Mapping[str, Any] = {}
     _first_block = FIRST_BLOCK
 
     def __init__(
@@ -215,6 +218,9 @@ class ProgramEngine:
     def _prepare_next(self, until: Any) -> None:
         """Prepare the next block."""
 
+    def _without_states(self, until: Any, most: int) -> tuple[Any, ...]:
+        return self._integrator.propagate_until(until, most, **self._bound)
+
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps as the integrator does, each with its states."""
         raise NotImplementedError
@@ -235,7 +241,7 @@ class ProgramEngine:
         if dense:
             (_, shortest, longest, steps), dense_steps = self._with_states(until, self._length)
         else:
-            (_, shortest, longest, steps, *_), dense_steps = integrator.propagate_until(until, self._length), []
+            (_, shortest, longest, steps, *_), dense_steps = self._without_states(until, self._length), []
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest, reached = max(self._usual, longest), until if broken_off else integrator.time
@@ -277,7 +283,7 @@ class ProgramEngine:
         if dense:
             (outcome, _, step, _), dense_steps = self._with_states(until, 1)
         else:
-            (outcome, _, step, *_), dense_steps = self._integrator.propagate_until(until, 1), []
+            (outcome, _, step, *_), dense_steps = self._without_states(until, 1), []
         if outcome == self._failed:
             self._go_back(time_point, before)
             reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)

@@ -60,6 +60,8 @@ class RobustEngine:
         Tolerance of a step, relative, and absolute in terms of nominal sizes.
     matrices : MotionMatrices or None
         Of the same motion. None to make them.
+    max_step : float or None
+        Largest step.
 
     Attributes
     ----------
@@ -73,12 +75,17 @@ class RobustEngine:
     code = ""
 
     def __init__(
-        self, problem: MotionProblem, tol: float | None = None, matrices: MotionMatrices | None = None
+        self,
+        problem: MotionProblem,
+        tol: float | None = None,
+        matrices: MotionMatrices | None = None,
+        max_step: float | None = None,
     ) -> None:
         clock = time.perf_counter()
         self.matrices = matrices or MotionMatrices(problem)
         self.compile_seconds = time.perf_counter() - clock
         self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
+        self._max_step = max_step or np.inf
         self.stiff, self._at_boundary = False, 0  # the steps at the boundary of stability, one after the other
         self._multipliers, self._independent = problem.multipliers, problem.independent
         self._collocations: list[Collocation] = []
@@ -108,7 +115,7 @@ class RobustEngine:
         if tol is not None and not TIGHTEST <= tol < 1:
             holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
-        return cls(task.problem, tol, task.matrices)
+        return cls(task.problem, tol, task.matrices, task.request.max_step)
 
     @property
     def case(self) -> Difficulty:
@@ -294,6 +301,7 @@ class RobustEngine:
             rtol=self.tol,
             atol=self.tol * nominal.state,
             first_step=self._first_step(t, settled),
+            max_step=self._max_step,
         )
         self.time, self.state, self._vanishing, self._failed_at, self._met = t, settled, np.inf, np.inf, np.inf
         self._longest = self._solver.h_abs
@@ -431,6 +439,7 @@ class RobustEngine:
     def _along_collocation(self, until: float) -> Step:
         """Step along the collocation polynomial, to its end or to a time."""
         start, collocation = self.time, self._collocation
+        until = min(until, start + self._max_step)
         if until < collocation.end:
             self.time, self.state = until, collocation(np.array([until]))[:, 0]
         else:

@@ -11,6 +11,7 @@ import weakref
 from collections.abc import Iterator
 from functools import partial
 from itertools import pairwise
+from math import inf
 from pathlib import Path
 from textwrap import indent
 from typing import Any
@@ -71,6 +72,8 @@ class RungeKuttaEngine(ProgramEngine):
         gamma of Baumgarte's and Gear's stabilization, as for `TaylorEngine`.
     matrices : MotionMatrices or None
         Of the same motion. None to make them.
+    max_step : float or None
+        Largest step.
 
     Raises
     ------
@@ -87,6 +90,7 @@ class RungeKuttaEngine(ProgramEngine):
         stabilization: Stabilization = Stabilization.PROJECTION,
         decay: float | None = None,
         matrices: MotionMatrices | None = None,
+        max_step: float | None = None,
     ) -> None:
         super().__init__(problem, read_precision("double"), True, matrices)
         if tol is not None and not FINEST <= tol < 1:
@@ -95,8 +99,8 @@ class RungeKuttaEngine(ProgramEngine):
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
         stabilization = stabilization if problem.multipliers else Stabilization.NONE
-        nominal = self._matrices.nominal
-        self._integrator = DormandPrince(problem, self.tol, stabilization, decay_in(problem, decay), nominal)
+        nominal, decay = self._matrices.nominal, decay_in(problem, decay)
+        self._integrator = DormandPrince(problem, self.tol, stabilization, decay, nominal, max_step or inf)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 
@@ -122,7 +126,7 @@ class RungeKuttaEngine(ProgramEngine):
         if precision.name != "double":
             raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
         decay = decay_until(end, problem, precision)
-        return cls(with_values_in(problem), request.tol, request.stabilization, decay, matrices)
+        return cls(with_values_in(problem), request.tol, request.stabilization, decay, matrices, request.max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -218,6 +222,8 @@ class DormandPrince(ctypes.Structure):
         gamma.
     nominal : Nominal
         Sizes of the motion's quantities.
+    max_step : float
+        Largest step.
 
     Attributes
     ----------
@@ -250,7 +256,13 @@ class DormandPrince(ctypes.Structure):
     )
 
     def __init__(
-        self, problem: MotionProblem, tol: float, stabilization: Stabilization, decay: float, nominal: Nominal
+        self,
+        problem: MotionProblem,
+        tol: float,
+        stabilization: Stabilization,
+        decay: float,
+        nominal: Nominal,
+        max_step: float,
     ) -> None:
         self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
         super().__init__(float(problem.start["t"]), self.state.ctypes.data)
@@ -265,8 +277,8 @@ class DormandPrince(ctypes.Structure):
         self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         self.open_values = (ctypes.c_double * len(problem.open_inputs)).in_dll(library, "open_values")
-        library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
-        library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data)
+        library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+        library.begin(tol, max_step, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data)
         self._closing = weakref.finalize(self, unload, library)
         self._closing.atexit = False
 

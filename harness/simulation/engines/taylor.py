@@ -27,6 +27,7 @@ from ..request import EngineName, Stabilization
 from .code import Code, better_code, compilation, is_worthwhile, running
 from .engine import Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
+from .scaled_time import ScaledTime, in_unit, unit_of
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
 FINE, FINE_BLOCK = 1e-7, 512  # a tolerance whose steps leave the constraints so slowly that a first block may be long
@@ -52,6 +53,8 @@ class TaylorEngine(ProgramEngine):
         Of the same motion. None to make them.
     end : number or None
         The last time of the motion, or None for the next one that it reaches.
+    max_step : float or None
+        Largest step.
 
     Raises
     ------
@@ -71,6 +74,7 @@ class TaylorEngine(ProgramEngine):
         decay: float | None = None,
         matrices: MotionMatrices | None = None,
         end: Any = None,
+        max_step: float | None = None,
     ) -> None:
         numbers = read_precision(precision) if isinstance(precision, str) else precision
         super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
@@ -81,7 +85,9 @@ class TaylorEngine(ProgramEngine):
         if self._finer < 1:
             whole = self._tolerance.get("tol", self.precision.rounding)
             self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
+        self._unit = unit_of(self._matrices.nominal.time, self.precision)
         self._chosen, self._end = compact is not None, end
+        self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
         self._stabilization, self._decay = stabilization, decay
@@ -128,7 +134,8 @@ class TaylorEngine(ProgramEngine):
         )
         require_means(at_start(problem), precision, order_for(digits))
         decay = decay_until(end, problem, precision)
-        return cls(problem, request.tol, precision, request.stabilization, request.compact, decay, matrices, end)
+        compact, max_step = request.compact, request.max_step
+        return cls(problem, request.tol, precision, request.stabilization, compact, decay, matrices, end, max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -181,7 +188,7 @@ class TaylorEngine(ProgramEngine):
             None if these steps reach the time or fail.
         """
         begun, state = self.time, self.state.copy()
-        outcome = self._integrator.propagate_until(until, max_steps=trial)[0]
+        outcome = self._without_states(until, trial)[0]
         covered = float(self.time - begun)
         self._integrator.time, self._integrator.state[:] = begun, state
         if outcome != import_heyoka().taylor_outcome.step_limit:
@@ -198,9 +205,12 @@ class TaylorEngine(ProgramEngine):
         return self._one_by_one(until, most) if few else self._at_once(until, most)
 
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
-        *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True)
+        *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True, **self._bound)
         steps = [] if between is None else pairwise(between.times)
-        return tuple(taken), [Step(*step, lambda times: between(times).T.copy()) for step in steps]
+        unit = self._unit
+        return tuple(taken), [
+            Step(start * unit, end * unit, lambda times: between(times / unit).T.copy()) for start, end in steps
+        ]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Return each step with its Taylor polynomials."""
@@ -208,12 +218,16 @@ class TaylorEngine(ProgramEngine):
         shortest, longest, outcome = inf, 0, None
         for _ in range(most):
             begun, rest = integrator.dtime
-            outcome, least, greatest, taken, *_ = integrator.propagate_until(until, 1, write_tc=True)
+            outcome, least, greatest, taken, *_ = integrator.propagate_until(until, 1, write_tc=True, **self._bound)
             if outcome == self._failed or not taken:
                 break
             shortest, longest = min(shortest, least), max(longest, greatest)
             dense_steps.append(
-                Step(begun, integrator.time, partial(states_of, begun, rest, integrator.tc.T[..., None].copy()))
+                Step(
+                    begun,
+                    integrator.time,
+                    partial(states_of, begun, rest, self._unit, integrator.tc.T[..., None].copy()),
+                )
             )
             if integrator.time == until:
                 break
@@ -282,9 +296,10 @@ class TaylorEngine(ProgramEngine):
 
     def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
-        kind = ("taylor", code, self._stabilization, self.precision.name, *self._tolerance.values())
+        kind = ("taylor", code, self._stabilization, self.precision.name, self._unit, *self._tolerance.values())
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
-        self._integrator = copy(built) if self._problem.open_inputs else built
+        built = copy(built) if self._problem.open_inputs else built
+        self._integrator = built if self._unit == 1 else ScaledTime(built, self._unit)
         self._integrator.time = time_point
         self._integrator.state[:] = state
         self._set_values()
@@ -292,6 +307,8 @@ class TaylorEngine(ProgramEngine):
 
     def _compiled(self, code: Code, state: Numbers) -> Any:
         equations = self._equations_with(self._stabilization, self._decay)
+        if self._unit != 1:
+            equations = in_unit(equations, self._unit)
         return import_heyoka().taylor_adaptive(
             equations, state, **self._tolerance, **code.options, **self.precision.options
         )
@@ -303,13 +320,15 @@ class TaylorEngine(ProgramEngine):
         return equations_of_motion(self._problem, self._program, self.precision)
 
 
-def states_of(begun: Any, rest: Any, coefficients: Numbers, times: Numbers) -> Numbers:
+def states_of(begun: Any, rest: Any, unit: Any, coefficients: Numbers, times: Numbers) -> Numbers:
     """Return states at times of a step by polynomials of the time.
 
     Parameters
     ----------
     begun, rest : number
         Beginning of the step: their sum, in twice the digits of a number.
+    unit : number
+        Unit of the time in the polynomials.
     coefficients : ndarray, shape (order + 1, 2n, 1)
         Those of powers of the time since the beginning.
     times : ndarray, shape (k,)
@@ -319,7 +338,7 @@ def states_of(begun: Any, rest: Any, coefficients: Numbers, times: Numbers) -> N
     -------
     ndarray, shape (2n, k)
     """
-    since = times - begun - rest
+    since = (times - begun - rest) / unit
     states = coefficients[-1] * since
     for coefficient in coefficients[-2:0:-1]:
         states += coefficient
