@@ -146,17 +146,17 @@ class _Look:
                 self._zeros[place] = np.nan if found is None else found.t
         here = np.array([stop for stop in self._stops if self._reached < stop <= step.end])
         if len(here):
-            self._points |= zip(here, self._kept(here, step.states(here)).T, strict=True)
+            self._points |= zip(here, self._recorded(here, step.states(here)).T, strict=True)
         self._reached = step.end
 
     def motion(self, report: Report) -> SingleMotion:
         """Return the result of the motion."""
         end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
-        last = self._kept(np.array([end]), state[:, None])[:, 0]
+        last = self._recorded(np.array([end]), state[:, None])[:, 0]
         points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
         return SingleMotion(report, state, points, _steps(self._taken), self._zeros)
 
-    def _kept(self, times: Floats, states: Floats) -> Floats:
+    def _recorded(self, times: Floats, states: Floats) -> Floats:
         return self._values(self._mode, times, states)[self._along + len(self._zeros) :]
 
     def _crossings(self, mode: Mode, place: int) -> Events:

@@ -154,7 +154,7 @@ def test_largest_and_mean_values_of_sharp_quantities_had_half_of_their_digits(a,
     assert found["status"].tolist() == [Status.OK]
 
 
-def test_a_quantity_that_no_polynomials_resolve_was_kept_as_if_they_did(rows_of, scenes):
+def test_a_quantity_that_no_polynomials_resolve_was_recorded_as_if_they_did(rows_of, scenes):
     """Ten million oscillations on the way."""
     found = columns(rows_of(scenes / "oscillator.mac", "max(sin(10^7*x)),x", "k=1:4:2", "m=1:2:1").table(0, 1))
     assert found["status"].tolist() == [Status.INACCURATE]
