@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 from .failures import ErrorKind, HolonomError
 
+USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
 REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<extra>\w+)['\"])?")
 NO_ROOM = ("failed to map segment", "annot allocate memory")  # message of the loader of libraries
 
@@ -23,16 +24,49 @@ def extra_of(package: str) -> str | None:
     str or None
         None if no extra installs it.
     """
+    return next((extra for name, extra in requirements() if name.lower() == package.lower()), None)
+
+
+def requirements() -> Iterator[tuple[str, str | None]]:
+    """Yield each package that Holonom requires, and its extra.
+
+    Yields
+    ------
+    package : str
+    extra : str or None
+        None for the core.
+    """
     from importlib import metadata  # takes longer to import than all else here
 
-    found = (REQUIREMENT.match(requirement) for requirement in metadata.requires("holonom") or ())
-    return next((each["extra"] for each in found if each["package"].lower() == package.lower()), None)
+    for requirement in metadata.requires("holonom") or ():
+        found = REQUIREMENT.match(requirement)
+        yield found["package"], found["extra"]
+
+
+def version_of(package: str) -> str | None:
+    """Return the version of an installed package.
+
+    Parameters
+    ----------
+    package : str
+
+    Returns
+    -------
+    str or None
+        None if it is not installed.
+    """
+    from importlib import metadata
+
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return None
 
 
 def missing_package(package: str) -> HolonomError:
     """Return the error for a missing package.
 
-    It names the command that installs the package's extra.
+    It names the command that installs the package's extra, and all extras of users that are incomplete.
 
     Parameters
     ----------
@@ -44,7 +78,8 @@ def missing_package(package: str) -> HolonomError:
     HolonomError
     """
     extra = extra_of(package)
-    named = f"holonom[{extra}]" if extra else package
+    lacking = {extra, *(other for name, other in requirements() if other in USERS_EXTRAS and version_of(name) is None)}
+    named = f"holonom[{','.join(sorted(lacking))}]" if extra else package
     return HolonomError(
         ErrorKind.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`"
     )

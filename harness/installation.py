@@ -4,11 +4,10 @@ import os
 import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 
 from .documents import ask
-from .extras import REQUIREMENT
+from .extras import USERS_EXTRAS, requirements, version_of
 from .failures import ErrorKind, HolonomError
 from .files import shared, write_files, write_whole, written_before
 from .formats import Document, read
@@ -16,7 +15,6 @@ from .maxima import LIBRARY
 from .reference.maxima_help import help_files
 from .sandbox import has_sandbox
 
-USERS_EXTRAS = ("motion", "sweep", "companion")  # the others are for those who develop Holonom
 # Names of the system's packages, by the command that installs them.
 INSTALLERS = {
     "apt-get": ("apt-get install", {"maxima": "maxima", "cc": "gcc libc6-dev"}),
@@ -59,13 +57,11 @@ def components() -> Iterator[Component]:
         elif program == "bwrap" and version is not None and (hindrance := _hindrance_of_sandbox()):
             version, hint = None, hindrance
         yield Component(program, version, purpose, program == NEEDED, hint)
-    for requirement in metadata.requires("holonom") or ():
-        found = REQUIREMENT.match(requirement)
-        package, extra = found["package"], found["extra"]
+    for package, extra in requirements():
         if extra is None:
-            yield Component(package, _version(package), "the core", True, "pip install holonom")
+            yield Component(package, version_of(package), "the core", True, "pip install holonom")
         elif extra in USERS_EXTRAS:
-            yield Component(package, _version(package), extra, False, f"pip install 'holonom[{extra}]'")
+            yield Component(package, version_of(package), extra, False, f"pip install 'holonom[{extra}]'")
 
 
 def _hindrance_of_sandbox() -> str:
@@ -99,16 +95,9 @@ def versions() -> dict[str, str]:
     dict of str to str
         By name. ``not installed`` for a missing component.
     """
-    packages = {name: _version(name.lower()) for name in ("heyoka", "SymPy")}
-    found = {"holonom": _version("holonom"), "Maxima": maxima_version(), **packages}
+    packages = {name: version_of(name.lower()) for name in ("heyoka", "SymPy")}
+    found = {"holonom": version_of("holonom"), "Maxima": maxima_version(), **packages}
     return {name: version or "not installed" for name, version in found.items()}
-
-
-def _version(package: str) -> str | None:
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return None
 
 
 def _install_program(program: str) -> str:

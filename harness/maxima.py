@@ -541,7 +541,8 @@ def _last_lines(printed: str) -> tuple[str, ...]:
 
 def _set(settings: Mapping[str, str]) -> str:
     """Return a Maxima assignment of the settings."""
-    return f"settings : [{', '.join(f'{name} = {value}' for name, value in settings.items())}]"
+    items = [f"'{name} = {value}" for name, value in settings.items()]
+    return f"settings : [{', '.join(items)}]"
 
 
 def _repeating_command(file: Path, call: str, settings: Mapping[str, str]) -> str:

@@ -172,6 +172,8 @@ def test_what_maxima_cannot_make_of_a_description_is_refused(tree, switched, tmp
 def test_only_what_is_used_is_set(write_scene):
     with refused("unused_setting"):
         describe(write_scene(SWITCHED), {"stif": "1"})
+    with pytest.raises(HolonomError, match="'closed_form_size'"):  # a variable of the library
+        describe(write_scene(SWITCHED), {"closed_form_size": "7"})
     assert describe(write_scene(SWITCHED), {"stiff": "7"}).scenes[0].parameter_values.trees["k"] == 7
 
 

@@ -185,6 +185,10 @@ class Simulation(Sampled, Shown):
             raise KeyError(f"no samples of {name!r}; the scene observes {', '.join(columns)}")
         return columns[name]
 
+    def __iter__(self) -> Iterator[str]:
+        """Return an iterator over the names of `keys`, as of a mapping."""
+        return iter(self.keys())
+
     def keys(self) -> tuple[str, ...]:
         """Return names of the quantities that have samples.
 

@@ -44,7 +44,7 @@ def test_outputs_of_controls_have_the_rates_of_the_law():
 def test_outputs_come_after_the_state_in_keys_frames_and_files(tmp_path):
     motion = pendulum().simulate(samples=3)
     own = ("pull", "a[1]", "a[2]", "kinetic")
-    assert motion.keys() == ("t", "x", "y", "dot(x)", "dot(y)", *own, "energy", "energy_error")
+    assert tuple(motion) == motion.keys() == ("t", "x", "y", "dot(x)", "dot(y)", *own, "energy", "energy_error")
     assert tuple(motion.report.outputs) == own
     assert motion.report.outputs["pull"] == motion["pull"][-1]
     assert list(motion.to_pandas()["pull"]) == list(motion["pull"])
