@@ -378,7 +378,7 @@ class HolonomError(Exception):
 
     def __str__(self) -> str:
         """Return the message with options spelt as arguments in Python."""
-        return self._message(_argument)
+        return self._message(argument)
 
     def __getattr__(self, name: str) -> Any:
         if name in ALIASES:
@@ -425,6 +425,17 @@ class HolonomError(Exception):
         return visible(" ".join(f"{part.rstrip('.')}." for part in (located, todo[:1].upper() + todo[1:]) if part))
 
 
-def _argument(option: str) -> str:
-    """Return the argument in Python that is an option on the command line."""
+def argument(option: str) -> str:
+    """Return the argument in Python that is an option on the command line.
+
+    Parameters
+    ----------
+    option : str
+        Such as ``--until``.
+
+    Returns
+    -------
+    str
+        Such as ``until``.
+    """
     return ARGUMENTS.get(option) or option.removeprefix("--").replace("-", "_")

@@ -23,6 +23,8 @@ from sphinx.util.docutils import docutils_namespace, patch_docutils
 import holonom
 from holonom.companion.chapter import FENCE
 from holonom.companion.pages import WHITESPACE
+from holonom.error_messages import pattern_of
+from holonom.failures import ErrorKind
 from holonom.files import shared, write_whole
 from holonom.language import DOMAIN, ENGLISH, LANGUAGES, LOCALE, catalog_file
 
@@ -65,6 +67,9 @@ def collected() -> Catalog:
         with file.open("rb") as text:
             for _, message, comments, _ in extract(method, text, KEYWORDS, options=options):
                 catalog.add(message, None, [(_place(file), None)], auto_comments=comments)
+    for kind in ErrorKind:
+        for text in (kind.reason, *kind.hints):
+            catalog.add(pattern_of(text), None, [("harness/failures.py", None)])
     return catalog
 
 

@@ -70,13 +70,14 @@ def test_public_functions_document_parameters_and_results():
 def public_functions(body):
     for node in body:
         public = isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_")
-        if public and not is_command(node):
+        if public and not has_no_sections(node):
             yield from public_functions(node.body) if isinstance(node, ast.ClassDef) else [node]
 
 
-def is_command(node):
-    """Return True for a command of Click: its docstring is its help text."""
-    return any(re.match(r"(holonom\.command|click\.group)\(", ast.unparse(each)) for each in node.decorator_list)
+def has_no_sections(node):
+    """Return True for a command of Click, documented by its help, and for a setter, documented by its property."""
+    form = re.compile(r"(holonom\.command|click\.group)\(|\w+\.setter$")
+    return any(form.match(ast.unparse(each)) for each in node.decorator_list)
 
 
 def undocumented(function):

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errata import errata  # noqa: F401, for the heads of pages
+from ..error_messages import translatable_error
 from ..failures import ErrorKind, HolonomError
 from ..processes import die_with_parent
 from ..record import derived_record
@@ -112,7 +113,7 @@ def answer(
     settings: Settings = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
 ) -> Any:
-    """Return what a method of a scene finds.
+    """Return the result of a method of a scene.
 
     Parameters
     ----------
@@ -252,4 +253,4 @@ def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
     try:
         return compute(*arguments)
     except HolonomError as error:
-        return FailedRun(str(error))
+        return FailedRun(translatable_error(error))

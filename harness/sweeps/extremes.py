@@ -52,7 +52,7 @@ class Steps(NamedTuple):
         Parameters
         ----------
         least : float or ndarray, shape (elements,)
-            A size beside which smaller ones do not count.
+            A size relative to which smaller ones do not count.
 
         Returns
         -------

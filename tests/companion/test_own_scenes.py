@@ -68,7 +68,7 @@ def pictures(own, prefix: str) -> set[str]:
 
 def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(own):
     assert pictures(own, "4-drawn") == {f"4-drawn-scene-1-{kind}.svg" for kind in ("moving", "still", "curves")}
-    assert "endless: the scene has no time span. Add time_span" in pages.words(own / "4-drawn-motion.html")
+    assert "endless: the scene has no time span (add time_span" in pages.words(own / "4-drawn-motion.html")
 
 
 def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):

@@ -238,7 +238,7 @@ class IndependentConstraints(FactoredConstraints):
             return None
 
     def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations and multipliers, refined at each state until changes are rounding errors."""
+        """Return accelerations and multipliers, refined to rounding errors."""
         accelerations, multipliers = self._solved(force, curvature)
         last, open_ = np.inf, True
         for _ in range(REFINEMENTS):
