@@ -7,7 +7,7 @@ and titles hold no characters that hide or reverse text.
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -158,6 +158,11 @@ class Description:
     def joints(self) -> Mapping[str, str]:
         """Name, in the file, of the joint or body that wrote each multiplier's constraint."""
         return self.content.get("joints", {})
+
+    @property
+    def joint_shapes(self) -> Mapping[str, Sequence[int]]:
+        """Numbers of the shapes, from 1, that vanish with each multiplier's constraint."""
+        return self.content.get("joint_shapes", {})
 
     @property
     def unused_parameters(self) -> tuple[str, ...]:

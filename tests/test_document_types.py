@@ -28,7 +28,7 @@ READ = {
     "model": (Model, (), "system source"),
     "effects": (Costs, (), ""),
     "program": (Program, (), "outputs"),
-    "motion-problem": (MotionProblem, (), "system source joints start drawing origins _compiled"),
+    "motion-problem": (MotionProblem, (), "system source joints joint_shapes start drawing origins _compiled"),
     "linearization": (LinearEquations, (), "scene system title"),
     "free-motion": (FreeMotion, (), "premises check control_law effects parameter_values system time_span"),
     "description scenes": (DescribedScene, ("scenes", 0), ""),

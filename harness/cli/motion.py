@@ -130,7 +130,7 @@ def simulate(
     imports = partial(_import_readers, click.get_current_context().obj is OWN_PROCESS)
     with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
-    problem = read_problem(document, source.description(request.settings).joints)
+    problem = read_problem(document, source.description(request.settings))
     if not stands(problem):
         problem = motion_problem(source, request, limits, digits)
     from ..display.motion import HINT_OF_ROOT, rejection, show_report

@@ -54,7 +54,7 @@ class Film:
     title: str
     times: NDArray[np.float64]  # shape (k,): equidistant
     shapes: tuple[Shape, ...]
-    # shape (k, numbers of the shape): x and y of a shape's places in their order, then, of a circle, the radius
+    # shape (k, numbers of the shape): as `Drawing.numbers`, nan from the frame on at which a shape has vanished
     numbers: tuple[NDArray[np.float64], ...]
 
     @property
@@ -85,7 +85,7 @@ class Film:
         """
         least = STEADY * max(map(np.ptp, extents(self.shapes, self.numbers)))
         for shape, numbers in zip(self.shapes, self.numbers, strict=True):
-            yield shape, numbers, bool(np.ptp(numbers, axis=0).max() > least)
+            yield shape, numbers, bool((np.nanmax(numbers, axis=0) - np.nanmin(numbers, axis=0)).max() > least)
 
 
 def film_of(simulation: "Simulation", drawing: Drawing) -> Film:
@@ -208,8 +208,14 @@ class _Stage:
     def draw(self, parent: Element, frames: slice, moving: bool) -> None:
         """Draw the moving or the fixed shapes at some frames."""
         for shape, numbers, moves in self.film.parts():
-            if moves is moving:
-                tag, attributes, columns = self._element(shape, numbers[frames], moves)
+            present = ~np.isnan(numbers[frames, 0])
+            if moves is moving and present.any():
+                last = numbers[frames][present][-1]
+                tag, attributes, columns = self._element(
+                    shape, np.where(present[:, None], numbers[frames], last), moves
+                )
+                if not present.all():
+                    columns["visibility"] = np.where(present, "visible", "hidden").tolist()
                 _animate(SubElement(parent, tag, attributes), columns, self.film.seconds)
 
     def draw_apart(self, frame: int, x: float, y: float) -> None:
@@ -323,7 +329,7 @@ def extents(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]]) -> 
         Least and greatest x, then least and greatest y.
     """
     return [
-        np.array([min(low.min() for low, _ in sides), max(high.max() for _, high in sides)])
+        np.array([min(np.nanmin(low) for low, _ in sides), max(np.nanmax(high) for _, high in sides)])
         for sides in ([_sides(shape, row, axis) for shape, row in zip(shapes, numbers, strict=True)] for axis in (0, 1))
     ]
 
@@ -341,8 +347,8 @@ def _last_frame(shapes: Sequence[Shape], numbers: Sequence[NDArray[np.float64]])
     """
     places = [row[:, :2] if shape is Shape.CIRCLE else row for shape, row in zip(shapes, numbers, strict=True)]
     xy = np.concatenate([row.reshape(len(row), -1, 2) for row in places], axis=1)
-    gone = np.cumsum(np.linalg.norm(np.diff(xy, axis=0), axis=2), axis=0).max(axis=1)
-    highest, lowest = np.maximum.accumulate(xy.max(axis=1), axis=0), np.minimum.accumulate(xy.min(axis=1), axis=0)
+    gone = np.nancumsum(np.linalg.norm(np.diff(xy, axis=0), axis=2), axis=0).max(axis=1)
+    highest, lowest = (each.accumulate(each.reduce(xy, axis=1), axis=0) for each in (np.fmax, np.fmin))
     reach = (highest - lowest).max(axis=1)[1:]
     often = np.flatnonzero(gone > ROUNDS * reach)
     return int(often[0]) + 1 if len(often) else len(xy) - 1

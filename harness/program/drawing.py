@@ -4,7 +4,7 @@
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 import numpy as np
@@ -33,6 +33,9 @@ class Drawing:
     # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1
     program: Program
     tables: tuple[Table, ...] = ()  # whose polynomials it takes
+    ends: Mapping[int, float] = field(
+        default_factory=dict
+    )  # of shapes, numbered from 1: time after which each is absent
 
     def numbers(self, times: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
         """Return the numbers of each shape along a motion.
@@ -47,7 +50,7 @@ class Drawing:
         Returns
         -------
         list of ndarray, shape (k, numbers of the shape)
-            x and y of its places in their order, then, of a circle, the radius.
+            x and y of its places in their order, then, of a circle, the radius. nan where a shape is absent.
         """
         known = {"t": times, **coordinates}
         for table, pieces in zip(self.tables, pieces_of_tables(self.tables), strict=True):
@@ -55,6 +58,10 @@ class Drawing:
         given = [np.asarray(known.get(name, 0.0), dtype=float) for name in self.program.inputs]
         found = dict(zip(self.program.outputs, NumpyFunction(self.program)(given), strict=True))
         return [
-            np.column_stack([values for name, values in found.items() if name.startswith(f"drawing[{place},")])
+            np.where(
+                np.asarray(times)[:, None] <= self.ends.get(place, np.inf),
+                np.column_stack([values for name, values in found.items() if name.startswith(f"drawing[{place},")]),
+                np.nan,
+            )
             for place in range(1, len(self.shapes) + 1)
         ]

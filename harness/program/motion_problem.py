@@ -23,10 +23,10 @@ from .request import Request
 from .table import Table
 
 if TYPE_CHECKING:
+    from ..description import Description
     from .drawing import Drawing
 
 Built = TypeVar("Built")
-NO_JOINTS: Mapping[str, str] = {}
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 
 
@@ -151,6 +151,7 @@ class MotionProblem:
     # sizes with which quantities are compared, by name, ``t`` for the time: those that the scene gives
     nominal: Mapping[str, float] = field(default_factory=dict)
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
+    joint_shapes: Mapping[str, Sequence[int]] = field(default_factory=dict)  # as `Description.joint_shapes`
     _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
@@ -341,7 +342,7 @@ def motion_problem(
     """
     source = source_of(file, limits)
     document = problem_document(source, request, limits, digits, open_parameters)
-    return read_problem(document, source.description(request.settings).joints)
+    return read_problem(document, source.description(request.settings))
 
 
 def problem_document(
@@ -380,15 +381,15 @@ def problem_document(
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
-def read_problem(text: str, joints: Mapping[str, str] = NO_JOINTS) -> MotionProblem:
+def read_problem(text: str, description: "Description | None" = None) -> MotionProblem:
     """Read the document of a motion problem.
 
     Parameters
     ----------
     text : str
         JSON document of `problem_document`.
-    joints : mapping of str to str
-        As `Description.joints`.
+    description : Description or None
+        Names the joints of multipliers, and their shapes.
 
     Returns
     -------
@@ -399,10 +400,13 @@ def read_problem(text: str, joints: Mapping[str, str] = NO_JOINTS) -> MotionProb
     HolonomError
         It is not such a document, or one of its programs is invalid.
     """
-    return _problem(read(Document.MOTION_PROBLEM, text), joints)
+    problem = _problem(read(Document.MOTION_PROBLEM, text))
+    if description is None:
+        return problem
+    return replace(problem, joints=description.joints, joint_shapes=description.joint_shapes)
 
 
-def _problem(document: Mapping[str, Any], joints: Mapping[str, str]) -> MotionProblem:
+def _problem(document: Mapping[str, Any]) -> MotionProblem:
     system, span, drawing = document["system"], document["time_span"], document["drawing"]
     start = document["parametric_start"]
     problem = structured(
@@ -413,11 +417,10 @@ def _problem(document: Mapping[str, Any], joints: Mapping[str, str]) -> MotionPr
         start=document["start"] or {"t": span[0] if span else "0"},
         parametric_start=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
         released=tuple(
-            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"], joints))
+            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
             for each in document.get("released", ())
         ),
         drawing=None,
-        joints=joints,
     )
     if drawing is None:
         return problem

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from fractions import Fraction
 from math import inf
 from typing import Any
@@ -23,7 +24,7 @@ from .engines.registry import engine_class
 from .evaluation import Numbers, as_floats, one_blas_thread
 from .events import Ending, first_event
 from .hard_cases import Difficulty, MotionState, hard_cases
-from .hybrid_motion import HybridMotion
+from .hybrid_motion import EventOutcome, HybridMotion
 from .mode import Mode
 from .recording import Recording, SampleBlock, largest
 from .request import FINAL_STATE_ALONE, EngineName, SimulationRequest, Stabilization
@@ -60,9 +61,20 @@ def simulate(problem: MotionProblem, request: SimulationRequest, progress: Progr
     """
     parts: list[Sampled] = []
     report = integrate(problem, request, parts.append, progress)
-    drawing = problem.drawing and drawing_with_values(problem)
+    drawing = problem.drawing and replace(drawing_with_values(problem), ends=_ends_of_shapes(problem, report))
     named = {"scene": problem.scene, "title": problem.title, "drawing": drawing}
     return Simulation(**named, report=report, **vars(joined(parts)))
+
+
+def _ends_of_shapes(problem: MotionProblem, report: Report) -> dict[int, float]:
+    """Return the time after which each shape is absent, as its joint is released."""
+    ends, shapes = {}, problem.joint_shapes
+    for switching in report.switchings:
+        if switching.outcome is EventOutcome.JOINT_RELEASED:
+            release = next(each for each in problem.released if each.of == switching.function)
+            ends |= {shape: switching.t for name in release.multipliers for shape in shapes.get(name, ())}
+            problem = release.after
+    return ends
 
 
 def integrate(

@@ -10,6 +10,7 @@ import holonom
 from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
 from holonom.crosscheck.report import Verdict
 from holonom.failures import HolonomError
+from holonom.figures.drawing import animation, film_of
 from holonom.program.motion_problem import problem_document, read_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
@@ -66,6 +67,20 @@ run : holonomic_scene(system, time_span = [0, 2], released = [weld = theta - %pi
 def released(motion: Simulation) -> list[tuple[float, str]]:
     assert {each.outcome for each in motion.report.switchings} == {EventOutcome.JOINT_RELEASED}
     return [(each.t, each.function) for each in motion.report.switchings]
+
+
+def test_a_cut_thread_vanishes_from_the_film():
+    """Each thread at its time; the bobs stay."""
+    motion = holonom.system(CHAIN).simulate(samples=21)
+    (lower, _), (upper, _) = released(motion)
+    numbers, times = motion.drawing.numbers(motion["t"], motion.coordinates), motion["t"]
+    last = [
+        (shape, times[np.isfinite(rows).all(axis=1)][-1])
+        for shape, rows in zip(motion.drawing.shapes, numbers, strict=False)
+    ]
+    assert [t for shape, t in last if shape == "segment"] == [times[times <= cut][-1] for cut in (upper, lower)]
+    assert {t for shape, t in last if shape == "point"} == {1.0}
+    assert animation(film_of(motion, motion.drawing)).count('attributeName="visibility"') == 2
 
 
 def test_cut_thread_lets_the_bob_fly_on_a_parabola():
