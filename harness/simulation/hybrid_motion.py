@@ -28,6 +28,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.motion_program import names_used
 from ..program.precision import Precision
@@ -51,6 +52,7 @@ from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import UNIQUE, Mode
 from .nominal import nominal_of, with_nominal
+from .place_and_reason import place_and_reason
 from .request import SimulationRequest
 from .residuals import residuals
 from .time_events import time_events
@@ -60,7 +62,9 @@ ZERO = 1e-12  # of what a switching function or its time derivative is at nomina
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
 LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: times at which a function of the time is looked at
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
-NOT_UNIQUE = "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
+NOT_UNIQUE = translatable(
+    "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
+)
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
 
@@ -304,7 +308,7 @@ class HybridMotion:
             self._reject(t, NOT_UNIQUE)
         again = t == self.intervals[-1].start and name in self._left
         if again or self._crowded(t):
-            self._reject(t, f"{self._signs[name].of} changes its sign again and again")
+            self._reject(t, translatable("%(sign)s changes its sign again and again", sign=self._signs[name].of))
         pattern, sign = {**before, name: crossing.to}, self._signs[name]
         if before[name] != SLIDING and sign.by not in (DependsOn.TIME, DependsOn.REACTION):
             pattern[name] = self._sign_behind(sign, pattern, t, state, crossing.to)
@@ -342,7 +346,13 @@ class HybridMotion:
         if driven(self.problem, sign.name):
             return self._decided(sign, pattern, t, state)
         if to is None:
-            self._reject(t, f"{sign.of} is zero, and not in forces alone, which leaves open how the motion continues")
+            self._reject(
+                t,
+                translatable(
+                    "%(sign)s is zero, and not in forces alone, which leaves open how the motion continues",
+                    sign=sign.of,
+                ),
+            )
         return to
 
     def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
@@ -353,12 +363,19 @@ class HybridMotion:
             return 1 if above > 0 else -1
         if above < 0 < below:
             if not holdable(self.problem, sign.name):
-                self._reject(t, f"{sign.of} slides under several forces that contain multipliers")
+                self._reject(
+                    t, translatable("%(sign)s slides under several forces that contain multipliers", sign=sign.of)
+                )
             if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
-                self._reject(t, f"{self._signs[other].of} and {sign.of} slide at the same time")
+                self._reject(
+                    t,
+                    translatable(
+                        "%(other)s and %(sign)s slide at the same time", other=self._signs[other].of, sign=sign.of
+                    ),
+                )
             return SLIDING
         if above > 0 > below:
-            self._reject(t, f"{sign.of} is zero, and the motion may leave to either side")
+            self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=sign.of))
         return 1 if above >= 0 and below >= 0 else -1
 
     def _with_reactions(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
@@ -393,12 +410,19 @@ class HybridMotion:
         left = residuals(new, floats, np.zeros(n), self.nominal)["position"]
         energies = np.outer(self.nominal.velocities, self.nominal.velocities)
         if left > CONTINUOUS or not _close(new.mass * energies, old.mass * energies):
-            self._reject(t, f"the constraints or the masses jump as {sign.of} changes its sign")
+            self._reject(
+                t, translatable("the constraints or the masses jump as %(sign)s changes its sign", sign=sign.of)
+            )
         kick = np.subtract(*(as_floats(mode.momenta(self._inputs(t, state))) for mode in (before, after)))
         moved = state.copy()
         if np.max(np.abs(kick) * self.nominal.velocities, initial=0.0) > CONTINUOUS * self.nominal.energy(new.mass):
             if self._precision.name != "double":
-                self._reject(t, f"momenta jump as {sign.of} changes its sign, which takes double precision")
+                self._reject(
+                    t,
+                    translatable(
+                        "momenta jump as %(sign)s changes its sign, which takes double precision", sign=sign.of
+                    ),
+                )
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         if after.problem.projection is None:
             moved = settle(after.matrices, float(t), as_floats(moved))[0]
@@ -410,9 +434,14 @@ class HybridMotion:
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
-                self._reject(t, f"an impact decides how the motion continues as {sign.of} changes its sign")
+                self._reject(
+                    t,
+                    translatable(
+                        "an impact decides how the motion continues as %(sign)s changes its sign", sign=sign.of
+                    ),
+                )
             if jump > CONTINUOUS * max(self.nominal.energy(old.mass), abs(float(before.energy_at(t, state)))):
-                self._reject(t, f"the energy jumps as {sign.of} changes its sign")
+                self._reject(t, translatable("the energy jumps as %(sign)s changes its sign", sign=sign.of))
         return moved
 
     def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
@@ -421,7 +450,12 @@ class HybridMotion:
         impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
         if np.max(np.abs(left)) > CONTINUOUS * np.max(np.abs(impulse)):
-            self._reject(t, f"servo-constraints would take an impulse of the controls as {sign.of} changes its sign")
+            self._reject(
+                t,
+                translatable(
+                    "servo-constraints would take an impulse of the controls as %(sign)s changes its sign", sign=sign.of
+                ),
+            )
 
     def _first_pattern(self, t: Any, state: Numbers) -> Pattern:
         """Return the signs at the initial time, each function after its inputs."""
@@ -451,7 +485,7 @@ class HybridMotion:
         return len(self.intervals) > CROWD and float(t - self.intervals[-CROWD].start) < CROWDED * self._span
 
     def _reject(self, t: Any, reason: str) -> None:
-        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{float(t):.10g}, where {reason}")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
 
     # ---- numbers at a given time ----
 

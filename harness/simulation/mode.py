@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, computing
 from ..program.motion_program import Program
 from ..program.precision import Precision
@@ -31,6 +32,7 @@ from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_o
 from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
+from .place_and_reason import place_and_reason
 from .request import FINAL_STATE_ALONE, SimulationRequest
 from .time_dependence import time_dependence
 from .time_events import TimeEvent
@@ -209,7 +211,7 @@ class Mode:
         if self.problem.controls is None:
             return np.empty((0, len(times)))
         found = self._controls(self._inputs(times, states))
-        _require_values("control", self.problem.controls, times, found)
+        _require_values(self.problem.controls, times, found)
         return found
 
     @cached_property
@@ -241,7 +243,7 @@ class Mode:
             return np.empty((0, len(times)))
         inputs = self._inputs(times, states, solutions.multipliers, accelerations=solutions.accelerations)
         found = self._outputs(inputs)
-        _require_values("output", self.problem.outputs, times, found)
+        _require_values(self.problem.outputs, times, found)
         return found
 
     @cached_property
@@ -302,7 +304,7 @@ class Mode:
         """
         now = self.engine.time
         if self.by_time.end is not None and float(now) >= self.by_time.end and now != until:
-            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.by_time.end:.10g}, where {self.by_time.reason}")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(self.by_time.end, self.by_time.reason))
         for t in self._vanishing:
             if shortly_before(t, self._start) == float(now):
                 require_gradient(self.problem, t, MotionState(self.matrices, float(now), as_floats(self.engine.state)))
@@ -328,10 +330,10 @@ class Mode:
         return self.engine.solutions(times, states).multipliers
 
 
-def _require_values(what: str, program: Program, times: Numbers, found: Numbers) -> None:
+def _require_values(program: Program, times: Numbers, found: Numbers) -> None:
     """Raise if one of the values, shape (outputs, k), is not a finite number."""
     missing = np.argwhere(~np.isfinite(as_floats(found)).T)
     if len(missing):
         point, place = missing[0]
-        reason = f"the {what} {list(program.outputs)[place]} has no value"
-        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{float(times[point]):.10g}, where {reason}")
+        reason = translatable("%(name)s has no value", name=list(program.outputs)[place])
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(times[point], reason))

@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..language import translatable
 from ..program.motion_program import Call, Expression, Name, Program, names_in
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
@@ -39,7 +40,8 @@ EPSILON = 1e-14  # relative rounding of a time, with a margin
 NEARLY_ALL = 0.99  # of the samples that estimate the rounding of an expression
 ROUNDED, BESIDE_ROUNDING = 32.0, 1e5  # times this rounding: an error that is none; the least size of an expression
 JUMP = 1e-3  # of the largest value: an error larger than rounding
-NOT_SMOOTH = "an expression of the time in the equations of motion is not smooth"
+NOT_SMOOTH = translatable("an expression of the time in the equations of motion is not smooth")
+UNBOUNDED = translatable("an expression of the time in the equations of motion grows beyond all bounds")
 BESIDE, NEARER = 1e-9, 1e-3  # of the lengths of two parts: how near to their boundary they are compared; and of that
 SHOWN = 1e-6  # relative error of a polynomial that shows how large an expression is
 BEYOND = 1e6  # times what an expression usually is: it has no bound
@@ -272,7 +274,7 @@ class _Scan:
         for place in np.argsort(starts, kind="stable"):
             t, missed = starts[place], error[:, place]
             if (missed > BEYOND * self._usual).any():
-                reason = "an expression of the time in the equations of motion grows beyond all bounds"
+                reason = UNBOUNDED
             elif (missed > JUMP * self._scale).any():
                 reason = NOT_SMOOTH
             else:

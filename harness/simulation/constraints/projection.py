@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ..matrices import MotionMatrices, Vector
+from ..place_and_reason import OVERFLOW, place_and_reason
 from .directions import EPSILON
 from .factorization import FactoredConstraints, factored_constraints
 
@@ -30,7 +32,10 @@ class InconsistentConstraints(HolonomError):
     """
 
     def __init__(self, t: float, residual: float) -> None:
-        super().__init__(ErrorKind.INCONSISTENT, detail=f"{t:.10g}; what remains is {residual:.2g}")
+        super().__init__(
+            ErrorKind.INCONSISTENT,
+            detail=translatable("%(time)s; what remains is %(residual)s", time=f"{t:.10g}", residual=f"{residual:.2g}"),
+        )
         self.residual = residual
 
 
@@ -67,7 +72,7 @@ def settle(
         at = matrices(t, state)
         if not np.all(at.finite):
             first = _where_not(at.finite, t)[0]
-            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{first:.10g}, where numbers overflow")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(first, OVERFLOW))
         factored = factored_constraints(at.mass, at.jacobian, rank)
         change = factored.correction(at.residual)
         size, extent = factored.length(change), _extent(factored, state[..., :n], nominal.coordinates)

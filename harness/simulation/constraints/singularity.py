@@ -16,6 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ...program.motion_problem import MotionProblem, computing
 from ...program.motion_program import Name
 from ...program.sign_pattern import program_with_values
@@ -23,6 +24,7 @@ from ...program.table_numbers import TimeFunction
 from ..evaluation import Numbers, as_floats
 from ..hard_cases import MotionState
 from ..matrices import Matrices, MotionMatrices, Vector, start_of
+from ..place_and_reason import OVERFLOW, place_and_reason
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
 from .projection import InconsistentConstraints, settle
 
@@ -143,7 +145,7 @@ def singular_values_at(matrices: MotionMatrices, t: float, state: Vector) -> Vec
 
 def _scaled(at: Matrices, t: float) -> WeightedConstraints:
     if not at.finite:
-        raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where numbers overflow")
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, OVERFLOW))
     return weighted_constraints(at.mass, at.jacobian)
 
 
@@ -322,8 +324,8 @@ def no_controls(t: float) -> HolonomError:
     -------
     HolonomError
     """
-    reason = "the controls move what servo-constraints prescribe in fewer directions"
-    return HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where {reason}")
+    reason = translatable("the controls move what servo-constraints prescribe in fewer directions")
+    return HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
 
 
 def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:

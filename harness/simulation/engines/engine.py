@@ -15,6 +15,7 @@ from ...program.precision import Precision
 from ..evaluation import Numbers
 from ..hard_cases import Difficulty
 from ..matrices import MotionMatrices
+from ..place_and_reason import place_and_reason
 from ..request import EngineName, SimulationRequest
 
 if TYPE_CHECKING:
@@ -83,7 +84,7 @@ class Obstruction(HolonomError):
     """
 
     def __init__(self, t: float, case: Difficulty, cause: str, passed: Callable[[Any, Numbers], bool]) -> None:
-        super().__init__(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where {cause}")
+        super().__init__(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, cause))
         self.case, self.cause, self.passed = case, cause, passed
 
 

@@ -25,6 +25,7 @@ from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
 from ..matrices import MotionMatrices
+from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
 from .engine import Obstruction, Solutions, Step, require_reach
 
@@ -314,7 +315,7 @@ class ProgramEngine:
             return None
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
-            return HolonomError(ErrorKind.NO_WAY_ON, detail=f"{t:.10g}, where steps become too short")
+            return HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, SHORT_STEPS))
         if vanished not in self._problem.reactions:
             return no_controls(t)
         return no_gradient(t, vanished)

@@ -18,6 +18,7 @@ import numpy as np
 from scipy.integrate import DOP853, OdeSolver, Radau
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ..constraints.directions import EPSILON, dependent_constraints, rank_of, weighted_constraints
 from ..constraints.factorization import factored_constraints
@@ -25,6 +26,7 @@ from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
 from ..hard_cases import Difficulty
 from ..matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
+from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
 from .collocation import NODES, Collocation, collocated
 from .engine import Solutions, Step, Task, require_reach
@@ -32,6 +34,8 @@ from .engine import Solutions, Step, Task, require_reach
 TOLERANCE = 1e-11
 TIGHTEST = 100 * EPSILON  # relative tolerance that SciPy's integrators hold
 SHORTEST = 1e-8  # of the longest step so far: a step that leads nowhere
+SINGULAR = translatable("the configuration is singular")
+SINGULAR_START = translatable("it starts from a singular configuration")
 REACH = 5.0  # steps ahead within which a singular configuration calls for collocation
 COLLOCATION_ERROR = 1e-12  # relative error of a collocation step's coordinates that will do at any tolerance
 OFF_BRANCH = 1e-7  # relative distance from the constraints at the end of a collocation step that is not rounding
@@ -264,7 +268,7 @@ class RobustEngine:
         self._longest = max(self._longest, solver.h_abs)
         cut_short = solver.status == "finished" and solver.t == until
         if solver.status == "failed" or (solver.h_abs < SHORTEST * self._longest and not cut_short):
-            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{start:.10g}, where steps become too short")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(start, SHORT_STEPS))
         if solver.status == "finished":
             solver.h_abs = max(solver.h_abs, length)
         if not self.stiff:
@@ -355,9 +359,7 @@ class RobustEngine:
         """No constraint that depended on the others at the initial time may come to count."""
         for at in zip(np.atleast_1d(t), np.atleast_2d(state), strict=True):
             if rank_of(singular_values_at(self.matrices, *at), UNTRUSTED) > self.rank:
-                raise HolonomError(
-                    ErrorKind.NO_WAY_ON, detail=f"{at[0]:.10g}, a singular configuration that it starts from"
-                )
+                raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(at[0], SINGULAR_START))
 
     # ---- singular configurations ----
 
@@ -368,7 +370,7 @@ class RobustEngine:
             return False
         self._collocation, self._failed_at = self._collocation_over(ahead), ahead
         if self._collocation is None and ahead < CLOSEST * max(self.matrices.nominal.time, abs(self.time)):
-            raise HolonomError(ErrorKind.NO_WAY_ON, detail=f"{self.time + ahead:.10g}, a singular configuration")
+            raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(self.time + ahead, SINGULAR))
         return self._collocation is not None
 
     def _collocation_over(self, ahead: float) -> Collocation | None:
@@ -404,9 +406,7 @@ class RobustEngine:
             collocation = collocated(self._accelerations, self.time, self.time + length, state, guess, sizes)
             if collocation is not None and self._trusted(collocation):
                 return self._taken(collocation)
-        raise HolonomError(
-            ErrorKind.NO_WAY_ON, detail=f"{self.time:.10g}, a singular configuration that it starts from"
-        )
+        raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(self.time, SINGULAR_START))
 
     def _place(self, collocation: Collocation) -> float:
         """Return the time at which the least counted singular value vanishes."""
