@@ -9,6 +9,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 SUFFIXES = {".py", ".mac", ".lisp", ".md", ".toml", ".json", ".c", ".h", ".js", ".html"}
+# Words of the glossary's left column that stay: "hard case", the order's own word and the name of a folder, a command's
+# document and a table; "rate" in identifiers, where the glossary asks for prose only; "letter" for those of an alphabet
+# or an index; "bar" for a part of a mechanism, a picture or a console; "miss" and "hold" in their plain meaning.
 # Old word: the word in its place. A word is also found inside an identifier, such as last_time.
 REPLACED = {
     r"instants?": "time, time_point",
