@@ -296,7 +296,7 @@ class TaylorEngine(ProgramEngine):
 
     def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
-        kind = ("taylor", code, self._stabilization, self.precision.name, self._unit, *self._tolerance.values())
+        kind = ("taylor", code, self._stabilization, self.precision.name, float(self._unit), *self._tolerance.values())
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
         built = copy(built) if self._problem.open_inputs else built
         self._integrator = built if self._unit == 1 else ScaledTime(built, self._unit)
