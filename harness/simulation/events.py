@@ -21,7 +21,9 @@ if TYPE_CHECKING:
     from .hybrid_motion import HybridMotion
     from .mode import Mode
 
-ZERO = 1e-12  # of an expression at the initial time, relative to its size in the first step: it has no sign
+ZERO = 1e-12  # of an expression at the initial time, relative to its size: it has no sign
+DRIFT = 10  # tolerances: the same later, where an expression has had no sign yet
+MOVED = 2.0**-10  # of the nominal sizes: how far a state is moved for the changes of expressions
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
 Values = Callable[[Numbers, Numbers], Numbers]
@@ -141,11 +143,14 @@ class Events(SignedFunctions):
         all_rows = self._rows = [(name, -1, 1) for name in self._names]
         sizes = self._sizes_in(step) if len(sides) < len(self._names) else None
         for part, places, values in self._looked_at(step):
-            begun = () if sizes is None else self._see_sides(values, sizes, sides)
+            begun = {} if sizes is None else self._see_sides(part, values, sizes, sides)
             known = [row for row, name in enumerate(self._names) if name in sides]
             self._rows = [(self._names[row], -sides[self._names[row]], sides[self._names[row]]) for row in known]
             signed = values[known] * np.array([[side] for *_, side in self._rows]).reshape(-1, 1)
-            found = self._first_in(part, places, signed, begun)
+            for row, place in enumerate(known):
+                first = begun.get(self._names[place], 0)
+                signed[row, :first] = np.maximum(signed[row, :first], 0.0)
+            found = self._first_in(part, places, signed, tuple(begun))
             self._require_values(places, values, found)
             if found is not None:
                 self._require_crossing(found, part, values)
@@ -154,23 +159,33 @@ class Events(SignedFunctions):
         return None
 
     def _sizes_in(self, step: Step) -> Numbers:
-        """Return the sizes of expressions in a step."""
+        """Return the sizes of expressions in a step, or of their changes with the state."""
         _, values = self._samples(step, NODES)
-        return np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
+        state, nominal = step.states(np.array([step.start])), step.mode.matrices.nominal.state
+        moved = np.repeat(state, 1 + len(nominal), axis=1)
+        for place, size in enumerate(nominal):
+            moved[place, 1 + place] += self._precision.number(repr(float(size * MOVED)))
+        found = self.values(np.repeat(np.array([step.start]), moved.shape[1]), moved)
+        changes = np.abs(found[:, 1:] - found[:, :1]) / MOVED
+        sizes = np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
+        return np.maximum(sizes, np.sum(changes, axis=1, where=np.isfinite(changes)))
 
-    def _see_sides(self, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> list[str]:
+    def _see_sides(self, part: Step, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> dict[str, int]:
         """Add the signs of expressions that are seen for the first time.
 
-        They belong to expressions that are zero at the beginning.
+        Return the samples at which those are seen that are zero before.
         """
-        begun = []
-        for name, row, size in zip(self._names, values, sizes, strict=True):
-            seen = np.flatnonzero(np.abs(row) > ZERO * size)
-            if name in sides or not seen.size:
+        begun: dict[str, int] = {}
+        least = np.outer(sizes, np.full(values.shape[1], max(ZERO, DRIFT * part.mode.engine.tol)))
+        if float(part.start) == float(part.mode.problem.start["t"]):
+            least[:, 0] = ZERO * sizes
+        for name, row, clear in zip(self._names, values, np.abs(values) > least, strict=True):
+            if name in sides or not clear.any():
                 continue
-            sides[name] = 1 if row[seen[0]] > 0 else -1
-            if seen[0] > 0:
-                begun.append(name)
+            first = int(np.argmax(clear))
+            sides[name] = 1 if row[first] > 0 else -1
+            if first > 0:
+                begun[name] = first
         return begun
 
     def _require_values(self, places: Numbers, values: Numbers, found: Crossing | None) -> None:

@@ -22,10 +22,11 @@ from ..program.motion_program import Expression, Name, Operation, Program, calls
 from ..program.precision import read_precision
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
-from ..simulation.evaluation import in_full_vectors
+from ..simulation.evaluation import Evaluation, in_full_vectors
+from ..simulation.events import MOVED, ZERO
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import BatchMatrices
-from ..simulation.nominal import COARSE, nominal_at_each, nominal_of, with_nominal
+from ..simulation.nominal import COARSE, Nominal, nominal_at_each, nominal_of, with_nominal
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
@@ -198,7 +199,7 @@ class RowMaker:
             rest = there[~small]
             left = self._together(rows, rest, states[:, ~small], stops) if len(rest) else rest
             return np.concatenate([there[small], left])
-        ends, ended = self._ends(states, values)
+        ends, ended = self._ends(states, values, nominal)
         times = sorted({*self._asked, *(t for t in stops if t < self._end)})
         stops = [np.minimum(time, ends) for time in times] if self._problem.until else times
         found = self._engine.integrate(states, values, stops)
@@ -213,16 +214,37 @@ class RowMaker:
         points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
         rows.residual[done] = residual[well]
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
-        self._keep_along(rows, done, found.seen[:, well])
+        seen = self._without_rounding(found.seen, self._crossing_at, states, values, nominal)
+        self._keep_along(rows, done, seen[:, well])
         return there[~well]
 
-    def _ends(self, states: Floats, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+    def _ends(self, states: Floats, values: Floats, nominal: Nominal) -> tuple[Floats, NDArray[np.bool_]]:
         """Return the end times of motions, and True for each that is known."""
         k = states.shape[1]
         if not self._problem.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
         found = self._ending_engine.integrate(states, values, [self._end])
-        return np.fmin(self._end, np.fmin.reduce(found.seen)), found.arrived
+        zeros = self._without_rounding(found.seen, self._events_at, states, values, nominal)
+        return np.fmin(self._end, np.fmin.reduce(zeros)), found.arrived
+
+    def _without_rounding(
+        self, seen: Floats, quantities_at: Evaluation, states: Floats, values: Floats, nominal: Nominal
+    ) -> Floats:
+        """Return recorded numbers, without the zeros of quantities that are only rounding errors.
+
+        The last numbers, one for each quantity, are its largest sizes. Before them come its zeros.
+        """
+        start = np.full((1, states.shape[1]), self._start)
+        here, changes = quantities_at(np.concatenate([start, states, values])), 0.0
+        for place, size in enumerate(nominal.state):
+            moved = states.copy()
+            moved[place] += MOVED * size
+            change = np.abs(quantities_at(np.concatenate([start, moved, values])) - here) / MOVED
+            changes = changes + np.where(np.isfinite(change), change, 0.0)
+        count = len(here)
+        seen, largest = seen[: len(seen) - count].copy(), seen[len(seen) - count :]
+        seen[len(seen) - count :][largest <= ZERO * changes] = np.nan
+        return seen
 
     def _by_itself(self, rows: "_Rows", row: int, state: Floats) -> None:
         problem = self._started(rows.values[:, row], state)
@@ -274,7 +296,7 @@ class RowMaker:
     def _look(self, steps: list[Steps]) -> Floats:
         """Return the numbers made of quantities, infinite if polynomials do not decide."""
         made = [np.where(resolved, number, np.inf) for number, resolved in self._numbers(steps[: len(self._along)])]
-        return np.array([*made, *(_zero(along) for along in steps[len(self._along) :])])
+        return np.array([*made, *_zeros(steps[len(self._along) :])])
 
     def _numbers(self, steps: list[Steps]) -> Iterator[tuple[Floats, NDArray[np.bool_]]]:
         """Yield the largest, least and mean values, each with True where it is resolved.
@@ -310,9 +332,7 @@ class RowMaker:
 
     def _at(self, times: Floats, states: Floats, values: Floats) -> Floats:
         """Return the quantities recorded at times, shape (quantities, k)."""
-        if not self._points:
-            return np.empty((0, states.shape[1]))
-        return self._evaluate(np.concatenate([times[None], states, values]))
+        return self._points_at(np.concatenate([times[None], states, values]))
 
     # ---- compiled when first needed ----
 
@@ -342,19 +362,36 @@ class RowMaker:
 
     @cached_property
     def _ending_engine(self) -> BatchEngine:
-        events = [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
-        return self._looking_at(events, lambda steps: np.array([_zero(along) for along in steps]))
+        return self._looking_at(self._events, lambda steps: np.array(_zeros(steps)))
+
+    @property
+    def _events(self) -> list[Expression]:
+        return [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
 
     def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION
         return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
 
     @cached_property
-    def _evaluate(self) -> "NDArray":
+    def _points_at(self) -> Evaluation:
+        return self._compiled(self._points)
+
+    @cached_property
+    def _crossing_at(self) -> Evaluation:
+        return self._compiled(self._crossing)
+
+    @cached_property
+    def _events_at(self) -> Evaluation:
+        return self._compiled(self._events)
+
+    def _compiled(self, quantities: Sequence[Expression]) -> Evaluation:
+        """Return the function of quantities that takes times, states and values."""
         heyoka = import_heyoka()
+        if not quantities:
+            return lambda inputs: np.empty((0, inputs.shape[1]))
         known = {name: heyoka.expression(name) for name in ("t", *self._problem.state, *self._problem.parameters)}
-        quantities = expressions_of(self._points, along_motion(self._problem, known))
-        return in_full_vectors(heyoka.cfunc(quantities, vars=list(known.values())))
+        found = expressions_of(quantities, along_motion(self._problem, known))
+        return in_full_vectors(heyoka.cfunc(found, vars=list(known.values())))
 
     @cached_property
     def _singles(self) -> SingleMotions:
@@ -444,6 +481,11 @@ def _made(kind: Kind, along: Steps) -> Floats:
             return largest_size(along)
         case _:
             return _mean(along)
+
+
+def _zeros(steps: Sequence[Steps]) -> list[Floats]:
+    """Return the first zeros of quantities, then their largest sizes."""
+    return [*map(_zero, steps), *map(largest_size, steps)]
 
 
 def _zero(along: Steps) -> Floats:

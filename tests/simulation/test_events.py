@@ -63,6 +63,18 @@ def test_what_never_crosses_zero_leaves_the_end_to_the_time_span():
     assert report_document(report)["ending"] == {"of": ["x+1", "(t-1)^2"], "crossed": None}
 
 
+@pytest.mark.parametrize("engine", ENGINES)
+def test_rounding_errors_end_no_motion(engine, c_compiler):
+    """The energy of a bob on its string, which stays what it was."""
+    report = (
+        holonom.system(STRING.replace("[lambda1]", "[(dot(x)^2 + dot(y)^2)/2 + g*(y - 1)]"))
+        .simulate(samples=2, engine=engine, until=1)
+        .report
+    )
+    assert report.ending.crossed is None
+    assert report.t == 1
+
+
 def test_two_crossings_within_one_step_are_seen():
     """The motion is a parabola, one step of the engine; the expression is negative for 2 ms."""
     report = thrown("(t - 1)^2 - 10^-6").simulate(samples=2).report

@@ -13,7 +13,7 @@ from holonom.failures import ErrorKind
 from holonom.simulation.request import Stabilization
 from holonom.simulation.time_dependence import time_dependence
 from holonom.sweeps import time_watch
-from holonom.sweeps.rows import Status
+from holonom.sweeps.rows import RowMaker, Status
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 OSCILLATOR = """load("holonom.mac")$
@@ -152,6 +152,15 @@ def test_largest_and_mean_values_of_sharp_quantities_had_half_of_their_digits(a,
     assert found[f"max({sharp})"] == pytest.approx(1, rel=1e-12)
     assert found[f"mean({sharp})"] == pytest.approx(mean, rel=1e-11)
     assert found["status"].tolist() == [Status.OK]
+
+
+@pytest.mark.parametrize("alone", [False, True])
+def test_rounding_errors_of_an_integral_of_the_motion_crossed_zero(alone, rows_of, scenes, monkeypatch):
+    integral = "x^2+m*dot(x)^2/k-1"
+    monkeypatch.setattr(RowMaker, "_batched", not alone)
+    found = columns(rows_of(scenes / "oscillator.mac", f"zero({integral})", "k=1:4:3", "m=1:2:2").table(0, 6))
+    assert np.isnan(found[f"zero({integral})"]).all()
+    assert (found["status"] == Status.OK).all()
 
 
 def test_a_quantity_that_no_polynomials_resolve_was_recorded_as_if_they_did(rows_of, scenes):
