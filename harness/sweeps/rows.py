@@ -230,7 +230,7 @@ class RowMaker:
     def _without_rounding(
         self, seen: Floats, quantities_at: Evaluation, states: Floats, values: Floats, nominal: Nominal
     ) -> Floats:
-        """Return recorded numbers, without the zeros of quantities that are only rounding errors.
+        """Return recorded numbers, zeros among rounding errors left out.
 
         The last numbers, one for each quantity, are its largest sizes. Before them come its zeros.
         """
