@@ -126,10 +126,10 @@ def peak_memory(file: Path, samples: int) -> int:
     program = (
         "import resource, sys; from pathlib import Path; from problems import problem\n"
         "from holonom.simulation.output import sample_file; from holonom.simulation.request import SimulationRequest\n"
-        "from holonom.simulation.simulate import follow\n"
+        "from holonom.simulation.simulate import integrate\n"
         "asked = problem('pendulum.mac', 'swing_scene')\n"
         "with sample_file(Path(sys.argv[1]), 17) as take:\n"
-        "    follow(asked, SimulationRequest(until=3, samples=int(sys.argv[2])), take)\n"
+        "    integrate(asked, SimulationRequest(until=3, samples=int(sys.argv[2])), take)\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)\n"
     )
     done = subprocess.run(
