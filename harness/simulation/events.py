@@ -15,6 +15,7 @@ from ..program.precision import Precision
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
 from .inputs import Inputs
+from .nominal import MOVED, changes_with_state
 from .zeros import NODES, Crossing, SignedFunctions
 
 if TYPE_CHECKING:
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 ZERO = 1e-12  # of an expression at the initial time, relative to its size: it has no sign
 DRIFT = 10  # tolerances: the same later, where an expression has had no sign yet
-MOVED = 2.0**-10  # of the nominal sizes: how far a state is moved for the changes of expressions
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
 Values = Callable[[Numbers, Numbers], Numbers]
@@ -161,14 +161,11 @@ class Events(SignedFunctions):
     def _sizes_in(self, step: Step) -> Numbers:
         """Return the sizes of expressions in a step, or of their changes with the state."""
         _, values = self._samples(step, NODES)
-        state, nominal = step.states(np.array([step.start])), step.mode.matrices.nominal.state
-        moved = np.repeat(state, 1 + len(nominal), axis=1)
-        for place, size in enumerate(nominal):
-            moved[place, 1 + place] += self._precision.number(repr(float(size * MOVED)))
-        found = self.values(np.repeat(np.array([step.start]), moved.shape[1]), moved)
-        changes = np.abs(found[:, 1:] - found[:, :1]) / MOVED
+        start = np.array([step.start])
+        moves = [self._precision.number(repr(float(MOVED * size))) for size in step.mode.matrices.nominal.state]
+        changes = changes_with_state(lambda states: self.values(start, states), step.states(start), moves)
         sizes = np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
-        return np.maximum(sizes, np.sum(changes, axis=1, where=np.isfinite(changes)))
+        return np.maximum(sizes, changes[:, 0])
 
     def _see_sides(self, part: Step, values: Numbers, sizes: Numbers, sides: dict[str, int]) -> dict[str, int]:
         """Add the signs of expressions that are seen for the first time.

@@ -148,7 +148,7 @@ def first_zero(steps: Steps) -> Floats:
 def _first_crossing(steps: Steps, parts: "_Parts", rounding: Floats) -> Floats:
     """Return the time of the first sign change for each element.
 
-    What is smaller than rounding, shape (steps, elements), has no sign.
+    Values smaller than rounding, shape (steps, elements), have no sign.
     """
     begun = np.searchsorted(parts.element, np.arange(rounding.shape[1]))  # the first part of each element
     small = np.repeat(rounding[parts.step, parts.element, None], 2, axis=1)

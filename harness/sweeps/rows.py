@@ -23,10 +23,18 @@ from ..program.precision import read_precision
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors
-from ..simulation.events import MOVED, ZERO
+from ..simulation.events import ZERO
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import BatchMatrices
-from ..simulation.nominal import COARSE, Nominal, nominal_at_each, nominal_of, with_nominal
+from ..simulation.nominal import (
+    COARSE,
+    MOVED,
+    Nominal,
+    changes_with_state,
+    nominal_at_each,
+    nominal_of,
+    with_nominal,
+)
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
@@ -235,13 +243,10 @@ class RowMaker:
         The last numbers, one for each quantity, are its largest sizes. Before them come its zeros.
         """
         start = np.full((1, states.shape[1]), self._start)
-        here, changes = quantities_at(np.concatenate([start, states, values])), 0.0
-        for place, size in enumerate(nominal.state):
-            moved = states.copy()
-            moved[place] += MOVED * size
-            change = np.abs(quantities_at(np.concatenate([start, moved, values])) - here) / MOVED
-            changes = changes + np.where(np.isfinite(change), change, 0.0)
-        count = len(here)
+        changes = changes_with_state(
+            lambda moved: quantities_at(np.concatenate([start, moved, values])), states, MOVED * nominal.state
+        )
+        count = len(changes)
         seen, largest = seen[: len(seen) - count].copy(), seen[len(seen) - count :]
         seen[len(seen) - count :][largest <= ZERO * changes] = np.nan
         return seen

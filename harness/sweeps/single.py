@@ -41,7 +41,7 @@ class SingleMotions:
     Parameters
     ----------
     along, zeros, points : sequence of Expression
-        Quantities to look at along the motion, to find the first zero of, and to keep at the times asked for.
+        Quantities to look at along the motion, to find the first zero of, and to record at the times asked for.
     """
 
     def __init__(
