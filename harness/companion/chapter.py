@@ -61,13 +61,14 @@ def _run(command: str, *words: str) -> Run:
     """Return the run of a command."""
     if command == "errata":
         return Run(runs.errata)
-    file, given = EXAMPLES / words[0], dict(zip(words[1::2], words[2::2], strict=True))
+    file, given = EXAMPLES / words[0], list(zip(words[1::2], words[2::2], strict=True))
     if command == "derive":
         return Run(runs.derive, (file,))
-    scene, settings = given.pop("--scene", None), given.pop("--set", "").split()
-    options = tuple((name.removeprefix("--"), _number(value)) for name, value in given.items())
-    asked = tuple(tuple(each.split("=")) for each in settings)
-    return Run(runs.answer, (command.replace("-", "_"), file, scene, options, asked))
+    settings = tuple(tuple(value.split("=")) for name, value in given if name == "--set")
+    options = {name.removeprefix("--"): value for name, value in given if name != "--set"}
+    scene = options.pop("scene", None)
+    asked = tuple((name, _number(value)) for name, value in options.items())
+    return Run(runs.answer, (command.replace("-", "_"), file, scene, asked, settings))
 
 
 def _number(text: str) -> int | Fraction:

@@ -33,9 +33,8 @@ class Drawing:
     # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1
     program: Program
     tables: tuple[Table, ...] = ()  # whose polynomials it takes
-    ends: Mapping[int, float] = field(
-        default_factory=dict
-    )  # of shapes, numbered from 1: time after which each is absent
+    # of shapes, numbered from 1: time after which each is absent
+    ends: Mapping[int, float] = field(default_factory=dict)
 
     def numbers(self, times: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
         """Return the numbers of each shape along a motion.
