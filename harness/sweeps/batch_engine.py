@@ -12,6 +12,7 @@ After a block of steps the states are projected onto the constraints. `holonom.s
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,10 +21,10 @@ from numpy.typing import NDArray
 from ..program.heyoka_function import dynamics, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Expression, Name
-from ..program.precision import read_precision
-from ..simulation.constraints.program_projection import distance, nearest_state
+from ..simulation.constraints.program_projection import corrections_of, distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
-from ..simulation.evaluation import batch_evaluation, in_full_vectors
+from ..simulation.evaluation import batch_evaluation
+from ..simulation.inputs import Inputs
 from ..simulation.nominal import nominal_of
 from .extremes import Steps
 from .quantities import along_motion, expressions_of
@@ -127,11 +128,11 @@ class BatchEngine:
         self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
         self._looking = _StepRecorder(self._integrator, self._behind) if along else None
-        self._unused = len(problem.multipliers)
+        self._inputs = Inputs(problem)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
-        self._nearest = None
+        self._corrections = None
         if projects and problem.multipliers:
-            self._nearest = in_full_vectors(nearest_state(problem, read_precision("double")))
+            self._corrections = corrections_of(problem, partial(batch_evaluation, problem))
 
     def integrate(self, states: Floats, values: Floats, stops: Stops) -> BatchResult:
         """Integrate motions from their initial states.
@@ -172,21 +173,19 @@ class BatchEngine:
         return BatchResult(reached, arrived, numbers, taken, error, exchanged)
 
     def _energies(self, times: float | Floats, states: Floats, values: Floats) -> Floats:
-        k = states.shape[1]
-        return self._energy(np.concatenate([np.full((1, k), times), states, np.zeros((self._unused, k)), values]))[0]
+        return self._energy(self._inputs(times, states, values=values))[0]
 
     def _on_constraints(self, states: Floats, values: Floats, stops: Stops, arrived: NDArray[np.bool_]) -> Floats:
         """Return the projected states at the stops, without elements that strayed."""
-        if self._nearest is None or not arrived.any():
+        if self._corrections is None or not arrived.any():
             return states
         for place, stop in enumerate(stops):
-            times = np.broadcast_to(stop, (1, states.shape[2]))
-            states[place], strayed = self._projected(times, states[place], values)
+            states[place], strayed = self._projected(stop, states[place], values)
             arrived &= ~strayed
         return states
 
     def _projected(self, times: Floats, states: Floats, values: Floats) -> tuple[Floats, NDArray[np.bool_]]:
-        found = self._nearest(np.concatenate([times, states, values]))
+        found = nearest_state(self._corrections, self._inputs(times, states, values=values), len(states))
         return found, ~(distance(states, found, self._nominal.state) <= STRAYED)
 
     def _batch(self, starts: Floats, pars: Floats, stops: Stops) -> _Batch:
@@ -242,8 +241,8 @@ class BatchEngine:
 
     def _keep(self, elements: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the elements whose block has ended before their motion."""
-        if self._nearest is not None:
-            projected, strayed = self._projected(self._time[None, :], self._moving, self._pars[:-1])
+        if self._corrections is not None:
+            projected, strayed = self._projected(self._time, self._moving, self._pars[:-1])
             self._moving[:, elements] = projected[:, elements]
             well &= ~(elements & strayed)
 

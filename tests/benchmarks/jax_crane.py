@@ -1,9 +1,9 @@
 """A million motions of the crane by JAX and diffrax, on whatever device JAX finds, beside the rows of a sweep.
 
-    holonom program examples/crane.mac --to python --module jax -o crane.py
+    holonom program examples/crane.mac --to python --module jax --parameters m,c -o crane.py
     holonom sweep examples/crane.mac --grid m=50:500:10 --grid c=0:40:10 -o rows
     python -c "import pandas; pandas.read_parquet('rows').to_csv('rows.csv', index=False)"
-    python tests/benchmarks/jax_crane.py crane.py rows.csv [COUNT]
+    python tests/benchmarks/jax_crane.py crane.py rows.csv [COUNT] > tests/benchmarks/jax_crane.txt
 
 It needs jax, diffrax and NumPy, and neither Holonom nor Maxima. COUNT motions, 1000 squared without it, differ in the
 mass of the load and in the brake, as in `sweep.py`. The states at the end are compared with the 100 rows, which lie on

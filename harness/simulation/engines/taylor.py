@@ -97,8 +97,6 @@ class TaylorEngine(ProgramEngine):
         self._set_up(code, self._counted[0], start)
         projects = stabilization is Stabilization.PROJECTION and problem.multipliers
         self._keeper = ProgramProjection(problem, self.precision) if projects else None
-        if projects and self._chosen:
-            self._keeper.nearest  # noqa: B018
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol) / self._finer
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
