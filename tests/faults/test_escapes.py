@@ -308,7 +308,7 @@ int main(void) {
 
 
 def compiled(program: str, folder: Path) -> Path:
-    (folder / "program.c").write_text(f"#include <unistd.h>\n{program}")
+    (folder / "program.c").write_text(f"#define _GNU_SOURCE\n#include <unistd.h>\n{program}")
     subprocess.run(["cc", "-o", folder / "program", folder / "program.c"], check=True)
     return folder / "program"
 
