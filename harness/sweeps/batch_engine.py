@@ -12,7 +12,6 @@ After a block of steps the states are projected onto the constraints. `holonom.s
 """
 
 from collections.abc import Callable, Sequence
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,7 +20,7 @@ from numpy.typing import NDArray
 from ..program.heyoka_function import dynamics, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Expression, Name
-from ..simulation.constraints.program_projection import corrections_of, distance, nearest_state
+from ..simulation.constraints.program_projection import distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
 from ..simulation.evaluation import batch_evaluation
 from ..simulation.inputs import Inputs
@@ -132,7 +131,7 @@ class BatchEngine:
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
         self._corrections = None
         if projects and problem.multipliers:
-            self._corrections = corrections_of(problem, partial(batch_evaluation, problem))
+            self._corrections = batch_evaluation(problem, problem.projection)
 
     def integrate(self, states: Floats, values: Floats, stops: Stops) -> BatchResult:
         """Integrate motions from their initial states.

@@ -4,20 +4,16 @@ It takes one step of Newton's method for the position and one for the velocity a
 residuals are of second order.
 """
 
-from collections.abc import Callable
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from ...program.motion_problem import MotionProblem, computing
-from ...program.motion_program import Program
+from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..inputs import Inputs
 from ..nominal import Vector, nominal_of
-
-Corrections = tuple[Evaluation, Evaluation]  # of the coordinates, and of the velocities
 
 
 class ProgramProjection:
@@ -28,10 +24,8 @@ class ProgramProjection:
         self._inputs = Inputs(problem, precision)
 
     @cached_property
-    def _corrections(self) -> Corrections:
-        evaluate = partial(evaluation_once, self._problem, precision=self._precision)
-        kind = "projection", self._precision.name
-        return self._problem.once(kind, self._problem.projection, lambda: corrections_of(self._problem, evaluate))
+    def _corrections(self) -> Evaluation:
+        return evaluation_once(self._problem, self._problem.projection, self._precision)
 
     def project(self, time: Any, state: Numbers) -> float:
         """Move a state, in place, to the nearest one that satisfies the constraints.
@@ -54,35 +48,13 @@ class ProgramProjection:
         return float(changed)
 
 
-def corrections_of(problem: MotionProblem, evaluate: Callable[[Program], Evaluation]) -> Corrections:
-    """Return the functions that correct coordinates and velocities.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        A motion with a projection program.
-    evaluate : callable
-        Makes a function of a program.
-
-    Returns
-    -------
-    tuple of callable
-        Each takes the inputs of the motion's programs.
-    """
-    halves = (
-        {f"{half}_correction[{k}]" for k in range(1, len(problem.coordinates) + 1)} for half in ("position", "velocity")
-    )
-    position, velocity = (evaluate(computing(problem.projection, outputs)) for outputs in halves)
-    return position, velocity
-
-
-def nearest_state(corrections: Corrections, inputs: Numbers, size: int) -> Numbers:
+def nearest_state(corrections: Evaluation, inputs: Numbers, size: int) -> Numbers:
     """Return the nearest state of one motion or of k motions that satisfies the constraints.
 
     Parameters
     ----------
-    corrections : tuple of callable
-        By `corrections_of`.
+    corrections : callable
+        Projection program of the motion.
     inputs : ndarray, shape (inputs,) or (inputs, k)
         Inputs at the states. Changed in place.
     size : int
@@ -93,9 +65,9 @@ def nearest_state(corrections: Corrections, inputs: Numbers, size: int) -> Numbe
     ndarray, shape (2n,) or (2n, k)
         A view of the inputs.
     """
-    state = inputs[1 : 1 + size]
-    for correction, part in zip(corrections, np.split(state, 2), strict=True):
-        part += correction(inputs)
+    state, half = inputs[1 : 1 + size], size // 2
+    state[:half] += corrections(inputs)[:half]
+    state[half:] += corrections(inputs)[half:]
     return state
 
 
