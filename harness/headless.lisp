@@ -155,7 +155,7 @@ before all, outcome, mark)."
     (declare (special errcatch))
     (catch 'macsyma-quit
       (return-from ending-of
-        (handler-case (progn (funcall run) '(finished ""))
+        (handler-case (progn (rat-error-to-merror (funcall run)) '(finished ""))
           (maxima-$error () (unbound errcatch (list 'fault (maxima-message) (refusal-id))))
           (unanswered-question (condition) (unbound errcatch (list 'question (text condition))))
           (unreadable-statement (condition) (unbound errcatch (list 'syntax (text condition))))

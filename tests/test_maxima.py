@@ -45,6 +45,7 @@ def test_a_scene_that_was_copied_away_from_beside_the_library_was_refused(write_
         ('x : 1$\ny : "unclosed', 2, ErrorKind.SYNTAX, "end of file"),
         ("f(x) := 1 + f(x)$\nf(1)$", 2, ErrorKind.LISP_ERROR, "overflow"),
         ("?car(1, 2)$", 1, ErrorKind.LISP_ERROR, "arguments"),
+        (r'?rat\-error("quotient is not exact")$', 1, ErrorKind.REFUSED, "quotient is not exact"),
     ],
 )
 def test_a_statement_that_fails_is_found(text, line, failure, detail, write_scene):

@@ -371,6 +371,32 @@ def test_the_document_has_the_controls(tmp_path):
     assert "F" in document["samples"]
 
 
+# The shaft's torque moves the height of the sleeve by the centrifugal force alone.
+GOVERNOR = """
+spindle : rigid_body(Ms, [Is, Is, Is], [xs, ys, zs], [p0, p1, p2, p3])$
+left    : rigid_body(m, [I1, I1, I3], [xa, ya, za], [a0, a1, a2, a3])$
+right   : rigid_body(m, [I1, I1, I3], [xb, yb, zb], [b0, b1, b2, b3])$
+sleeve  : particle(mc, [0, 0, h])$
+system : holonomic_system(
+  parameters = [Ms, Is, m, I1, I3, mc, g, l],
+  controls = [M],
+  assembly(spindle, left, right, sleeve,
+    bearing = revolute_joint(marker(spindle, [0,0,0], [0,0,1]), marker(ground, [0,0,0], [0,0,1])),
+    hinge_a = revolute_joint(marker(left, [0,0,l], [0,1,0]), marker(spindle, [0,0,0], [0,1,0])),
+    hinge_b = revolute_joint(marker(right, [0,0,l], [0,1,0]), marker(spindle, [0,0,0], [0,1,0])),
+    rod_a = distance_joint(left, sleeve, l),
+    rod_b = distance_joint(right, sleeve, l),
+    drive = applied_torque([0,0,M], spindle),
+    gravity = uniform_gravity(g, left, right, sleeve)))$
+servo_scene : holonomic_scene(system,
+  parameter_values = [Ms = 1, Is = 1/10, m = 1, I1 = 1/10, I3 = 1/100, mc = 1, g = 10, l = 1],
+  servo_constraints = [h = -6/5 + t^4],
+  initial_state = [xs = 0, ys = 0, zs = 0, p0 = 1, p1 = 0, p2 = 0, p3 = 0, dot(p3) = 3/2, dot(h) = 0],
+  initial_guess = [xa = -4/5, za = -3/5, ya = 0, xb = 4/5, yb = 0, zb = -3/5, h = -6/5,
+     a0 = 0.89, a1 = 0, a2 = 0.45, a3 = 0, b0 = 0.89, b1 = 0, b2 = -0.45, b3 = 0],
+  time_span = [0, 1])$
+"""
+
 REFUSED = {
     "one output too few": (
         ARM.replace(", l*sin(a) + l*sin(b) = sin(t)/4", ""),
@@ -417,6 +443,7 @@ REFUSED = {
         odd : holonomic_scene(system, servo_constraints = [y - t^4], initial_state = [x = 0])$""",
         "servo_of_velocities",
     ),
+    "a governor of rigid bodies, whose condition took minutes": (GOVERNOR, "servo_of_velocities"),
     "a start where the controls push nowhere": (
         """
         system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2, forces = [x*F])$
