@@ -50,7 +50,15 @@ if TYPE_CHECKING:
 LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
 
-def load(path: str | Path, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
+@takes_options(*options_of(FreeRequest, "closed_form_size"))
+def load(
+    path: str | Path,
+    scene: str | None = None,
+    limits: Limits | None = None,
+    *,
+    options: dict[str, Any],
+    **settings: Number,
+) -> "Scene":
     """Open a scene file, or a description.
 
     Parameters
@@ -62,6 +70,7 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
         Name of the scene. Default: the last one in the file.
     limits : Limits or None
         Limits of each run of Maxima. Default: 120 s and 4 GiB.
+    {options}
     **settings : int, float, Fraction, Decimal or str
         Values of parameters, and of variables of the file. A float counts as the decimal that prints it.
 
@@ -89,17 +98,28 @@ def load(path: str | Path, scene: str | None = None, limits: Limits | None = Non
     file = scene_file(path)
     if not file.is_file():
         raise HolonomError(ErrorKind.FILE_MISSING, file, near_file(file))
-    return _opened(file, scene, settings, limits)
+    return _opened(file, scene, settings, limits, **options)
 
 
-def system(text: str, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
+@takes_options(*options_of(FreeRequest, "closed_form_size"))
+def system(
+    text: str,
+    scene: str | None = None,
+    limits: Limits | None = None,
+    *,
+    options: dict[str, Any],
+    **settings: Number,
+) -> "Scene":
     """Open a scene that is given as Maxima text.
 
     Parameters
     ----------
     text : str
         Text of a scene file, also without ``load("holonom.mac")``.
-    scene, limits, **settings
+    scene, limits
+        As for `load`.
+    {options}
+    **settings : int, float, Fraction, Decimal or str
         As for `load`.
 
     Returns
@@ -124,15 +144,21 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
-    opened = _opened(file, scene, settings, limits)
+    opened = _opened(file, scene, settings, limits, **options)
     opened._directory = directory  # it is removed with the last scene that reads the file
     return opened
 
 
-def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
+def _opened(
+    file: Path,
+    scene: str | None,
+    settings: Mapping[str, Number],
+    limits: Limits | None,
+    closed_form_size: int | None,
+) -> "Scene":
     limits = limits or Limits()
     warn_unsandboxed(limits)
-    return Scene(file, scene, _settings(settings), limits)
+    return Scene(file, scene, _settings(settings), limits, closed_form_size)
 
 
 @takes_options(
@@ -223,11 +249,18 @@ class Scene:
     <Scene 'examples/pendulum.mac'>
     """
 
-    def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
+    def __init__(
+        self,
+        file: Path,
+        name: str | None,
+        settings: Mapping[str, str],
+        limits: Limits,
+        closed_form_size: int | None = None,
+    ) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: OwnDirectory | None = None
-        self._source = Source(file, limits)
+        self._source = Source(file, limits, closed_form_size)
         self._derived = Derivations(self._source)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":

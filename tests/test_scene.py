@@ -12,6 +12,7 @@ import sympy
 from refusing import failing, refused
 
 import holonom
+from holonom.crosscheck.report import Verdict
 from holonom.failures import ErrorKind, HolonomError
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -134,6 +135,16 @@ def test_check_and_free_answer_what_the_commands_answer(pendulum):
     assert "condition of free motion" in pendulum.free()._repr_html_()
     assert pendulum.free(closed_form_size=2).condition is None
     assert pendulum.free().condition is not None
+
+
+def test_load_limits_closed_forms_of_all_results():
+    scene = holonom.load("examples/pendulum.mac", closed_form_size=2)
+    assert scene.record.derivations[0].left_out.limit == 2
+    assert not {"4", "5", "8", "9", "10", "11"} & {each.number for each in scene.equations}
+    report = scene.check()
+    assert report.disagreements == 0
+    assert report.count(Verdict.LEFT_OUT) > 6
+    assert scene.free().condition is None
 
 
 def test_results_print_as_the_command_line_prints_them(pendulum, released):

@@ -25,7 +25,9 @@ CONTENTS = """
 """
 
 
-def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> dict[str, Chapter]:
+def chapters_of_scenes(
+    files: Sequence[Path], settings: Settings, limits: Limits, closed_form_size: int | None = None
+) -> dict[str, Chapter]:
     """Return the chapters of the pages about scene files, by page name.
 
     Parameters
@@ -36,6 +38,8 @@ def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out, or None for each file's own.
 
     Returns
     -------
@@ -45,7 +49,7 @@ def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
         asked = file, settings, limits
-        runs = {"study": Run(study, asked), "motions": Run(motions, asked)}
+        runs = {"study": Run(study, (*asked, closed_form_size)), "motions": Run(motions, asked)}
         found |= {f"{prefix}{name}": Chapter(runs, partial(_page, prefix, file, name == "motion")) for name in PAGES}
     return found
 

@@ -81,7 +81,12 @@ class FileAnswers:
         return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
 
 
-def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAULT_LIMITS) -> Derived:
+def derive(
+    file: Path,
+    settings: Settings = NO_SETTINGS,
+    limits: Limits = DEFAULT_LIMITS,
+    closed_form_size: int | None = None,
+) -> Derived:
     """Return the derivation of a scene file, cross-checked.
 
     Parameters
@@ -92,6 +97,8 @@ def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAUL
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -100,7 +107,7 @@ def derive(file: Path, settings: Settings = NO_SETTINGS, limits: Limits = DEFAUL
     """
     from ..crosscheck.check import check_record
 
-    source = Source(file, limits)
+    source = Source(file, limits, closed_form_size)
     record = derived_record(source, dict(settings), limits)
     return Derived(record, check_record(record, source.description(dict(settings))))
 
@@ -141,7 +148,7 @@ def answer(
     return found
 
 
-def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
+def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int | None = None) -> FileAnswers:
     """Return all answers about a scene file.
 
     Parameters
@@ -152,6 +159,8 @@ def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -159,9 +168,10 @@ def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
         Derivation, and free motion and series by scene.
     """
     names = names_of_scenes(file, settings, limits)
+    closed_forms = (("closed_form_size", closed_form_size),)
     return FileAnswers(
-        derive(file, settings, limits),
-        {name: or_failure(answer, "free", file, name, NO_SETTINGS, settings, limits) for name in names},
+        derive(file, settings, limits, closed_form_size),
+        {name: or_failure(answer, "free", file, name, closed_forms, settings, limits) for name in names},
         {name: or_failure(answer, "series", file, name, OWN_ORDER, settings, limits) for name in names},
     )
 
