@@ -80,9 +80,7 @@ def missing_package(package: str) -> HolonomError:
     extra = extra_of(package)
     lacking = {extra, *(other for name, other in requirements() if other in USERS_EXTRAS and version_of(name) is None)}
     named = f"holonom[{','.join(sorted(lacking))}]" if extra else package
-    return HolonomError(
-        ErrorKind.EXTRA_MISSING, detail=f"{package}, which is not installed; run `pip install '{named}'`"
-    )
+    return HolonomError(ErrorKind.EXTRA_MISSING, package=package, named=named)
 
 
 def require_room(error: ImportError) -> None:

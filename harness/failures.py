@@ -180,7 +180,7 @@ class ErrorKind(Enum):
     )
     NOT_PRINTED = "the browser did not print the book: {detail}"
     COMPILER_REFUSED = "the C compiler cannot compile the motion program: {detail}"
-    EXTRA_MISSING = (MACHINE, "this needs {detail}")
+    EXTRA_MISSING = (MACHINE, "this needs {package}, which is not installed", "run `pip install '{named}'`")
     BEYOND_RADIUS = ("{detail}", "choose an earlier time", "continue the motion with {--until}")
     ORDER_TOO_HIGH = ("{detail}", "use a lower order", "use {--digits}")
     NOT_A_PRECISION = ("{detail}", "use another precision", "use {--digits}, for Maxima's numbers")

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from .failures import ErrorKind, HolonomError
+from .language import translatable
 from .temporary import remove_tree
 
 MANIFEST = ".holonom-written"
@@ -76,7 +77,7 @@ def near_file(missing: Path) -> str:
     from difflib import get_close_matches
 
     near = get_close_matches(missing.name, names, n=1)
-    return f", but there is {missing.with_name(near[0])}" if near else ""
+    return translatable(", but there is %(name)s", name=missing.with_name(near[0])) if near else ""
 
 
 def require_writable(path: Path) -> None:

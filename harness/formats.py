@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .failures import ErrorKind, HolonomError
+from .language import translatable
 
 if TYPE_CHECKING:
     from jsonschema_rs import Draft202012Validator
@@ -88,7 +89,7 @@ def read(document: Document, text: str) -> dict[str, Any]:
     try:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
-        raise _error(document, f"it is not JSON, {error}") from None
+        raise _error(document, translatable("it is not JSON, %(error)s", error=error)) from None
     require(document, content)
     return content
 
@@ -113,7 +114,10 @@ def require(document: Document | Publication, content: Any) -> None:
     except UnicodeEncodeError as error:  # half of a character, which JSON can write
         raise _error(document, str(error)) from None
     if error := min(errors, key=lambda each: len(each.instance_path), default=None):
-        raise _error(document, f"at {_json_path(error.instance_path)}, {error.message[:SHOWN]}")
+        raise _error(
+            document,
+            translatable("at %(place)s, %(error)s", place=_json_path(error.instance_path), error=error.message[:SHOWN]),
+        )
 
 
 def _json_path(steps: Iterable[str | int]) -> str:
@@ -182,4 +186,7 @@ def _validator(name: str) -> "Draft202012Validator":
 
 
 def _error(document: Document | Publication, detail: str) -> HolonomError:
-    return HolonomError(ErrorKind.NOT_A_DOCUMENT, detail=f"holonom-{document}: {detail}")
+    return HolonomError(
+        ErrorKind.NOT_A_DOCUMENT,
+        detail=translatable("%(place)s: %(reason)s", place=f"holonom-{document}", reason=detail),
+    )

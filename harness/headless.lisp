@@ -10,8 +10,8 @@
 ;;;
 ;;; Each makes an error of all that would stop or prompt, a question, a syntax error, a Lisp error, and leaves the
 ;;; outcome in a file: a mark that the run is given, the kind of ending, the file, the line of the statement (0
-;;; outside of them), the id of the library's refusal (empty if it is none), the message, and the mark again, a line
-;;; each. Until the end the kind is STARTED.
+;;; outside of them), the id of the library's refusal (empty if it is none), the message, of a refusal as JSON with its
+;;; parts, and the mark again, a line each. Until the end the kind is STARTED.
 ;;;
 ;;; The kinds of endings are FINISHED, FAULT (Maxima or the file itself refused), QUESTION, SYNTAX and LISP.
 
@@ -156,7 +156,7 @@ before all, outcome, mark)."
     (catch 'macsyma-quit
       (return-from ending-of
         (handler-case (progn (rat-error-to-merror (funcall run)) '(finished ""))
-          (maxima-$error () (unbound errcatch (list 'fault (maxima-message) (refusal-id))))
+          (maxima-$error () (unbound errcatch (fault)))
           (unanswered-question (condition) (unbound errcatch (list 'question (text condition))))
           (unreadable-statement (condition) (unbound errcatch (list 'syntax (text condition))))
           (serious-condition (condition) (unbound errcatch (list 'lisp (lisp-message condition)))))))
@@ -167,12 +167,17 @@ before all, outcome, mark)."
   (errlfun1 outside)
   ending)
 
-(defun refusal-id ()
-  "The id of the refusal of the library that Maxima's error is, or an empty text."
+(defun fault ()
+  "Return Maxima's error: its message, or for a refusal of the library its message with its parts as JSON, and its id."
   (let ((met (and (boundp '*asked-for*)
                   (symbol-value '*asked-for*)
                   (mfuncall (funcall 'read-name '$refusal_met)))))
-    (if met (funcall 'characters-of-name (second met)) "")))
+    (if met
+        (list 'fault
+              (with-output-to-string (out)
+                (funcall 'write-json (mfuncall (funcall 'read-name '$json_reason) (fifth met)) out))
+              (funcall 'characters-of-name (second met)))
+        (list 'fault (maxima-message)))))
 
 ;;; Text for people: one line, names without the backslashes that Maxima's own reader wants
 

@@ -11,6 +11,7 @@ Texts that are made before the language is known, such as a title or a reason in
 from __future__ import annotations
 
 import gettext as catalogs
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -23,6 +24,7 @@ from .extras import missing_package
 
 ENGLISH = "en"
 LANGUAGES = {ENGLISH: "English", "zh": "中文"}
+PLACEHOLDER = re.compile(r"%\((\w+)\)s")
 LOCALE, DOMAIN = Path(__file__).with_name("locale"), "holonom"
 _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
@@ -51,11 +53,18 @@ class Message(str):
         Returns
         -------
         str
+
+        Raises
+        ------
+        ValueError
+            The pattern has a placeholder without a value, or of another form than ``%(name)s``.
         """
         if isinstance(content, str):
             return content
-        values = {name: Message.of_document(value) for name, value in content["values"].items()}
-        return Message(content["pattern"], **values)
+        pattern, values = content["pattern"], content["values"]
+        if not set(PLACEHOLDER.findall(pattern)) <= values.keys() or "%" in PLACEHOLDER.sub("", pattern):
+            raise ValueError(pattern)
+        return Message(pattern, **{name: Message.of_document(value) for name, value in values.items()})
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _message, (self.pattern, self.values)

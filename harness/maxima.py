@@ -8,6 +8,7 @@ A scene file is a program, perhaps an untrusted one. One process runs it and wri
 which start after the first has ended and never see the file, derive from that description.
 """
 
+import json
 import os
 import re
 import shlex
@@ -19,11 +20,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
-from typing import BinaryIO, NamedTuple
+from typing import Any, BinaryIO, NamedTuple
 
 from .failures import ErrorKind, HolonomError
 from .files import near_file, shared
 from .hidden import visible_line
+from .language import Message, translatable
 from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken
 from .sandbox import MIB, LimitExceeded, Limits, Place, Sandbox, is_isolated, run_process, surroundings
 from .scene_files import copy_scene_files
@@ -378,7 +380,7 @@ def read_maxima_text(file: Path) -> str:
     """
     try:
         if not stat.S_ISREG(file.stat().st_mode):
-            raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "not a regular file")
+            raise HolonomError(ErrorKind.FILE_UNREADABLE, file, translatable("not a regular file"))
         with file.open("rb") as opened:
             content = limited(opened, file)
     except FileNotFoundError:
@@ -391,7 +393,7 @@ def read_maxima_text(file: Path) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         raise HolonomError(ErrorKind.NOT_UTF8, f"{file}:{line}", f"0x{content[error.start]:02x}") from None
     if "\0" in text:
-        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, "it contains null characters")
+        raise HolonomError(ErrorKind.FILE_UNREADABLE, file, translatable("it contains null characters"))
     return text.removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -494,8 +496,18 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
     own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
-    detail = visible_line(" ".join(message.split())) or "it gives no message"
-    return Ending(ENDINGS[kind], place, detail, refusal or None)
+    try:
+        detail = Message.of_document(_one_line(json.loads(message))) if refusal else _one_line(message).strip()
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+        return Ending(ErrorKind.OUTPUT_TRUNCATED, str(run.file), OUTCOME)
+    return Ending(ENDINGS[kind], place, detail or translatable("it gives no message"), refusal or None)
+
+
+def _one_line(content: Any) -> Any:
+    """Return a message or its parts, each on one line without hidden characters."""
+    if isinstance(content, dict):
+        return {name: _one_line(part) for name, part in content.items()}
+    return visible_line(re.sub(r"\s+", " ", content))
 
 
 def _unfinished(run: Run, status: int) -> Ending:

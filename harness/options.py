@@ -11,12 +11,13 @@ from dataclasses import Field, dataclass, field, fields
 from decimal import Decimal
 from enum import StrEnum
 from fractions import Fraction
-from functools import wraps
+from functools import reduce, wraps
 from numbers import Integral, Real
 from types import NoneType
 from typing import Any, TypeVar, get_origin
 
 from .failures import ErrorKind, HolonomError
+from .language import Message, translatable
 
 LONGEST = 200  # digits of a number that an option gives
 LARGEST_EXPONENT = 307  # of a double
@@ -30,7 +31,12 @@ NAMES = {
     Fraction: "number",
     NoneType: "None",
 }
-EXPECTED = {bool: (bool, "True or False"), int: (Integral, "an integer"), float: (Real, "a number"), str: (str, "text")}
+EXPECTED = {
+    bool: (bool, translatable("True or False")),
+    int: (Integral, translatable("an integer")),
+    float: (Real, translatable("a number")),
+    str: (str, translatable("text")),
+}
 Number = int | float | Fraction | Decimal | str
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -154,26 +160,38 @@ def read(each: Field, value: Any) -> Any:
     if kind is tuple:
         names = value.split(",") if isinstance(value, str) else value
         if not (isinstance(names, Iterable) and all(isinstance(name, str) for name in names)):
-            raise _unexpected(each, value, "names")
+            raise _unexpected(each, value, translatable("names"))
         return tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
     expected = [EXPECTED[kind] for kind in _types(each) if kind is not NoneType]
     if not any(isinstance(value, taken) for taken, _ in expected):
-        raise _unexpected(each, value, " or ".join(name for _, name in expected))
+        raise _unexpected(each, value, reduce(_or, [name for _, name in expected]))
     if isinstance(value, str):
         return value
     if stated.least is not None and not value >= stated.least:
-        bound = f"{stated.least:g} or more"
+        bound = translatable("%(least)s or more", least=f"{stated.least:g}")
     elif stated.above is not None and not value > stated.above:
-        bound = f"more than {stated.above:g}"
+        bound = translatable("more than %(above)s", above=f"{stated.above:g}")
     elif stated.most is not None and not value <= stated.most:
-        bound = f"at most {stated.most:g}"
+        bound = translatable("at most %(most)s", most=f"{stated.most:g}")
     else:
         return value
-    raise HolonomError(ErrorKind.NOT_IN_RANGE, detail=f"expected {bound}, not {value}", option=spelt_of(each))
+    raise HolonomError(
+        ErrorKind.NOT_IN_RANGE,
+        detail=translatable("expected %(bound)s, not %(value)s", bound=bound, value=value),
+        option=spelt_of(each),
+    )
 
 
 def _unexpected(each: Field, value: Any, expected: str) -> HolonomError:
-    return HolonomError(ErrorKind.NOT_A_CHOICE, detail=f"'{value}': expected {expected}", option=spelt_of(each))
+    return HolonomError(
+        ErrorKind.NOT_A_CHOICE,
+        detail=translatable("'%(value)s': expected %(expected)s", value=value, expected=expected),
+        option=spelt_of(each),
+    )
+
+
+def _or(first: Message, last: Message) -> Message:
+    return translatable("%(first)s or %(last)s", first=first, last=last)
 
 
 def spelt_of(each: Field) -> str:

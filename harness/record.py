@@ -14,6 +14,7 @@ from .described import Correction, System, Values, expression
 from .documents import ask
 from .failures import ErrorKind, HolonomError
 from .formats import Document, read
+from .language import translatable
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source
@@ -200,5 +201,7 @@ def read_record(text: str) -> Record:
     record = structured(Record, read(Document.RECORD, text))
     for scene in record.scenes:
         if scene.derivation >= len(record.derivations):
-            raise HolonomError(ErrorKind.NOT_A_RECORD, detail=f"the scene {scene.name} has no derivation")
+            raise HolonomError(
+                ErrorKind.NOT_A_RECORD, detail=translatable("the scene %(scene)s has no derivation", scene=scene.name)
+            )
     return record

@@ -23,6 +23,7 @@ from pathlib import Path
 
 from . import processes
 from .failures import ErrorKind, HolonomError
+from .language import translatable
 from .system_calls import call_filter
 
 MIB = 1024 * 1024
@@ -263,7 +264,11 @@ def has_sandbox() -> bool:
         raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, str(error)) from None
     message = tried.stderr.decode(errors="replace").strip()
     if tried.returncode and not any(words in message for words in FORBIDDEN):
-        raise HolonomError(ErrorKind.SANDBOX_FAILED, bubblewrap, message or f"exit status {tried.returncode}")
+        raise HolonomError(
+            ErrorKind.SANDBOX_FAILED,
+            bubblewrap,
+            message or translatable("exit status %(status)s", status=tried.returncode),
+        )
     return tried.returncode == 0
 
 

@@ -15,6 +15,7 @@ from .equations import Equations
 from .extras import naming_the_extra
 from .failures import ErrorKind, HolonomError
 from .files import near_file, scene_file
+from .language import translatable
 from .options import Number, options_of, takes_options
 from .program.forms import MotionProgram
 from .program.request import DaeRequest, FreeRequest, Request, Solve, read_settings
@@ -353,7 +354,8 @@ class Scene:
     def _name_among(self, names: Sequence[str]) -> str | None:
         """Return the scene's name, by default the last one, or None."""
         if self._name is not None and self._name not in names:
-            detail = f"{self._name}; the file has {', '.join(names) or 'none'}"
+            listed = ", ".join(names) or translatable("none")
+            detail = translatable("%(name)s; the file has %(names)s", name=self._name, names=listed)
             raise HolonomError(ErrorKind.NO_SUCH_SCENE, self.file, detail)
         return self._name or next(reversed(names), None)
 

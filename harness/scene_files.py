@@ -12,6 +12,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from .failures import ErrorKind, HolonomError
+from .language import translatable
 
 SUFFIXES = (".mac", ".lisp", ".csv")
 STRING = re.compile(r'"((?:[^"\\\n]|\\.)*+)')  # also one that does not end, or a search takes the square of the time
@@ -67,7 +68,9 @@ class _Copies:
             content = source.read(self._left + 1)
         self._left -= len(content)
         if self._left < 0 or len(self.of) == MOST_FILES:
-            detail = f"more than {MOST_FILES} files or {MOST_BYTES // 2**20} MiB"
+            detail = translatable(
+                "more than %(files)s files or %(size)s MiB", files=MOST_FILES, size=MOST_BYTES // 2**20
+            )
             raise HolonomError(ErrorKind.TOO_MUCH_BESIDE, scene, detail)
         self.of[path] = self._folder / str(len(self.of))
         self.of[path].write_bytes(content)

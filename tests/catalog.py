@@ -36,14 +36,11 @@ IN_MAXIMA = re.compile(
     rf"\b(?:title|source)\s*=\s*{STRING}"  # of a system or a scene
     rf'|\bequation\("[^"]*",\s*"\w+",\s*{STRING}'  # names of equations
     rf'|\bprinted\("[^"]*",\s*{STRING}'
-    rf"|\bworded\(\s*{STRING}"  # reasons of results
-    # refusals that are reasons of results
-    rf"|\['(?:irregular_constraints|cancelling_masses|open_acceleration), \"\",\s*{STRING}"
-    rf"|\['(?:control_without_law|parameter_without_value|reacting_not_possible), \"\{{1\}}\",\s*{STRING}"
-    rf"|\['\w+, \"motion_(?:series|program)\",\s*{STRING}"
+    rf"|\bworded\(\s*{STRING}"  # reasons of results, parts of errors
     rf'|\b(?:then|else) "(inverse[^"]*|multipliers, [^"]*)"'
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
+REFUSAL = re.compile(rf"^  \['\w+, {STRING},\s+((?:{STRING}[,\s]*)+)\]", re.MULTILINE)
 SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
 EXPECTED = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
@@ -161,14 +158,14 @@ def _place(file: Path) -> str:
 
 
 def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
-    """Titles, sources, names of equations, notes and reasons in a Maxima file."""
-    text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL)
-    for found in IN_MAXIMA.finditer(text):
-        message = " ".join(next(filter(None, found.groups()), "").replace("\\\n", "").split())
-        if found[0].startswith("['"):
-            message = re.sub(r"\{(\d)\}", r"%(fact\1)s", message).rstrip(".")
-        if message:
-            yield 0, "gettext", message.replace('\\"', '"'), []
+    """Titles, sources, names of equations, notes, reasons and errors in a Maxima file."""
+    text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL).replace("\\\n", "")
+    messages = [next(filter(None, found.groups()), "") for found in IN_MAXIMA.finditer(text)]
+    errors = [message for row in REFUSAL.finditer(text) for message in re.findall(STRING, row[2])]
+    messages += [re.sub(r"\{(\d)\}", r"%(fact\1)s", message).rstrip(".") for message in errors]
+    for message in messages:
+        if not re.fullmatch(r"(%\(fact\d\)s)?", message):
+            yield 0, "gettext", re.sub(r"\s+", " ", message.replace('\\"', '"')), []
 
 
 def _in_markdown(

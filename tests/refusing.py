@@ -1,4 +1,4 @@
-"""Errors by their kinds, refusals of the library in Maxima by their ids: no words of theirs."""
+"""Errors by their kinds, refusals of the library in Maxima by their ids: no words of theirs. English in Chinese."""
 
 import re
 from collections.abc import Iterator
@@ -8,6 +8,14 @@ from string import Formatter
 import pytest
 
 from holonom.failures import ErrorKind, HolonomError
+
+ENGLISH_PROSE = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
+CODE = re.compile(r"`[^`]+`|holonom [a-z-]+|\w+=\S+|if t < 2 then")
+
+
+def english_in(text: str) -> list[str]:
+    """Return the first words of English prose in a Chinese text; commands and code in Maxima are none."""
+    return ENGLISH_PROSE.findall(CODE.sub("", text))
 
 
 @contextmanager

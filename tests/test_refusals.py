@@ -6,7 +6,9 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from refusing import english_in
 
+from holonom.language import Message, speaking, translated
 from holonom.maxima import LIBRARY, run_batch
 
 CASES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
@@ -14,7 +16,8 @@ ROWS: dict[str, list[dict[str, str]]] = CASES["refusals"]
 SOURCES = [file for ending in ("mac", "lisp") for file in sorted(Path(LIBRARY).rglob(f"*.{ending}"))]
 ASKING = """
 met : []$
-asks(%asked) := met : endcons(json_array(readable(refusal_of(%asked)), message_of_error()), met)$
+asks(%asked) := met : endcons(
+  json_array(readable(refusal_of(%asked)), message_of_error(), json_reason(last_refusal@message)), met)$
 write_met(%file) := write_json(apply('json_array, met), %file)$
 """
 
@@ -38,7 +41,15 @@ def answers(tmp_path_factory) -> dict[str, list[list[str]]]:
 
 @pytest.mark.parametrize("refusal", ROWS)
 def test_a_refusal_has_its_id_and_its_messages(answers, refusal):
-    assert answers[refusal] == [[refusal, row["message"]] for row in ROWS[refusal]]
+    assert [met[:2] for met in answers[refusal]] == [[refusal, row["message"]] for row in ROWS[refusal]]
+
+
+@pytest.mark.parametrize("refusal", ROWS)
+def test_a_refusal_has_no_english_words_in_chinese(answers, refusal):
+    for _, message, parts in answers[refusal]:
+        assert str(made := Message.of_document(parts)) == message
+        with speaking("zh"):
+            assert english_in(translated(made)) == []
 
 
 def test_each_refusal_has_a_case():

@@ -306,6 +306,6 @@ def test_in_python_advice_names_arguments_and_no_options(released):
 def test_without_numpy_a_scene_says_which_extra_brings_it(asked, released):
     hidden = f"import sys; sys.modules['numpy'] = None; import holonom; holonom.load({str(released.file)!r}).{asked}()"
     done = subprocess.run([sys.executable, "-c", hidden], capture_output=True, text=True)
-    told = HolonomError(ErrorKind.EXTRA_MISSING, detail="")
-    assert f"HolonomError: {told.reason}numpy" in done.stderr
+    told = HolonomError(ErrorKind.EXTRA_MISSING, package="numpy", named="holonom[motion]")
+    assert f"HolonomError: {told.reason}" in done.stderr
     assert "holonom[motion]" in done.stderr

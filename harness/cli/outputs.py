@@ -13,6 +13,7 @@ import click
 
 from ..failures import ErrorKind, HolonomError
 from ..files import require_writable, scene_file
+from ..language import translatable
 from ..temporary import private_directory
 
 STANDARD_OUTPUT = Path("-")
@@ -192,12 +193,12 @@ def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
     HolonomError
         An output is also a scene or another output.
     """
-    taken = [(scene, "the scene itself") for scene in scenes]
+    taken = [(scene, translatable("the scene itself")) for scene in scenes]
     for output in outputs:
         for other, what in taken:
             if _same_file(output, other):
                 raise HolonomError(ErrorKind.OUTPUT_TAKEN, output, what)
-        taken.append((output, "another output"))
+        taken.append((output, translatable("another output")))
 
 
 def require_replaceable(path: Path, json: bool) -> None:

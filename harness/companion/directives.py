@@ -9,6 +9,7 @@ with its number; Sphinx's ``numref`` would read all pages for every build.
 """
 
 import logging
+from gettext import NullTranslations
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.nodes import make_refnode
 from sphinx.writers.html5 import HTML5Translator
 
-from ..language import ENGLISH, LANGUAGES, catalog_file, gettext
+from ..language import ENGLISH, LANGUAGES, catalog_file, gettext, translatable
 from ..typeset.mathml import inline_mathml, mathml
 from .chapter import chapters_of_the_paper
 from .chapters import EXAMPLES
@@ -43,6 +44,15 @@ PROMPT = "holonom_prompt"  # the example and the statements of a page, among the
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".results"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of results of runs, in the folder of the pages
+THEME = {  # texts of the theme, which Sphinx's own catalogs do not have
+    translatable("Skip to content"),
+    translatable("Back to top"),
+    translatable("On this page"),
+    translatable("Next"),
+    translatable("Previous"),
+    translatable("Home"),
+    translatable("Made with "),
+}
 
 
 class Show(SphinxDirective):
@@ -352,9 +362,29 @@ def _language_of(app: Sphinx) -> str:
     return (app.config.language or ENGLISH).partition("_")[0]
 
 
+class ThemeTranslations(NullTranslations):
+    """Texts of the theme in the language of the pages."""
+
+    def gettext(self, message: str) -> str:
+        """Return a text of the theme.
+
+        Parameters
+        ----------
+        message : str
+            English text.
+
+        Returns
+        -------
+        str
+            Any other text is returned as it is.
+        """
+        return gettext(message) if message in THEME else message
+
+
 def _compile_catalogs(app: Sphinx, config: Config) -> None:
     """Make the catalogs ready for Sphinx, whose Chinese is called zh_CN."""
     language = _language_of(app)
+    app.translator.add_fallback(ThemeTranslations())
     config.locale_dirs = [str(Path(app.doctreedir) / "locale")]
     target = Path(config.locale_dirs[0], config.language, "LC_MESSAGES")
     target.mkdir(parents=True, exist_ok=True)

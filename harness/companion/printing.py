@@ -21,6 +21,7 @@ from sphinx.environment.adapters.indexentries import IndexEntries
 from ..extras import missing_package
 from ..failures import ErrorKind, HolonomError
 from ..files import write_whole
+from ..language import translatable
 from ..temporary import private_directory
 from .directives import FILES
 from .pages import environment
@@ -174,9 +175,14 @@ def _printed(page: Path) -> Path:
     try:
         done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=PATIENCE)
     except subprocess.TimeoutExpired:
-        raise HolonomError(ErrorKind.NOT_PRINTED, detail=f"it took longer than {PATIENCE} s") from None
+        raise HolonomError(
+            ErrorKind.NOT_PRINTED, detail=translatable("it took longer than %(limit)s s", limit=PATIENCE)
+        ) from None
     if not printed.is_file():
-        raise HolonomError(ErrorKind.NOT_PRINTED, detail=(done.stderr.strip().splitlines() or ["it wrote nothing"])[-1])
+        raise HolonomError(
+            ErrorKind.NOT_PRINTED,
+            detail=next(reversed(done.stderr.strip().splitlines()), translatable("it wrote nothing")),
+        )
     return printed
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..failures import ErrorKind, HolonomError
 from ..files import write_whole
 from ..hidden import visible_line
+from ..language import translatable
 from ..program.drawing import Shape
 from ..temporary import private_directory
 from .drawing import Film, animation, extents, film_of
@@ -74,11 +75,11 @@ def moving_picture(simulation: "Simulation") -> MovingPicture:
     times = simulation.times.astype(float)
     even = np.linspace(times[0], times[-1], len(times))
     if simulation.drawing is None:
-        raise HolonomError(ErrorKind.NOT_FILMED, detail="the system has no drawing")
+        raise HolonomError(ErrorKind.NOT_FILMED, detail=translatable("the system has no drawing"))
     if not simulation.coordinates:
-        raise HolonomError(ErrorKind.NOT_FILMED, detail="the scene does not observe its trajectory")
+        raise HolonomError(ErrorKind.NOT_FILMED, detail=translatable("the scene does not observe its trajectory"))
     if len(times) < 2 or np.abs(times - even).max() > EVEN * np.ptp(times):
-        raise HolonomError(ErrorKind.NOT_FILMED, detail="the samples are not equidistant")
+        raise HolonomError(ErrorKind.NOT_FILMED, detail=translatable("the samples are not equidistant"))
     return MovingPicture(film_of(simulation, simulation.drawing))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
-from ..language import gettext, translated
+from ..language import gettext, translatable, translated
 from .style import BLUE, LINES, PALETTE, VERMILION, figure_style, new_figure, svg_text, with_symbols, write_figure
 
 if TYPE_CHECKING:
@@ -92,7 +92,10 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
 def _chosen(groups: Mapping[str, Mapping[str, NDArray]], names: Sequence[str]) -> dict[str, dict[str, NDArray]]:
     known = {name for group in groups.values() for name in group}
     if unknown := [name for name in names if name not in known] or [""] * (not names):
-        raise HolonomError(ErrorKind.NO_CURVE, detail=f"{unknown[0]!r}; there are {', '.join(sorted(known))}")
+        raise HolonomError(
+            ErrorKind.NO_CURVE,
+            detail=translatable("%(name)s; there are %(names)s", name=repr(unknown[0]), names=", ".join(sorted(known))),
+        )
     return {title: {name: group[name] for name in group if name in names} for title, group in groups.items()}
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from .style import BLUE, figure_style, new_figure
 
 if TYPE_CHECKING:
@@ -43,7 +44,9 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
     names = [axis["name"] for axis in sweep.document["parameters"]]
     shown = quantity or plotted(sweep.document)
     if shown not in sweep.document["columns"] or shown in ("status", "note"):
-        raise HolonomError(ErrorKind.NOT_PLOTTED, detail=f"the sweep does not record {shown}")
+        raise HolonomError(
+            ErrorKind.NOT_PLOTTED, detail=translatable("the sweep does not record %(shown)s", shown=shown)
+        )
     table = sweep.dataset.to_table(columns=[*names, shown])
     columns = [np.array(table.column(name).to_numpy(zero_copy_only=False), dtype=float) for name in [*names, shown]]
     with figure_style():
@@ -76,7 +79,9 @@ def require_plottable(axes: "SweepAxes") -> None:
         More than two parameters vary, or two that are sampled.
     """
     if len(axes.names) > 2 or (len(axes.names) == 2 and axes.samples):
-        raise HolonomError(ErrorKind.NOT_PLOTTED, detail="a curve takes one parameter, a map two in grids or lists")
+        raise HolonomError(
+            ErrorKind.NOT_PLOTTED, detail=translatable("a curve takes one parameter, a map two in grids or lists")
+        )
 
 
 def plotted(document: dict[str, Any]) -> str:

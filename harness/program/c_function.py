@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..sandbox import LimitExceeded, Limits, Place, Sandbox, run_process
 from ..supervisor import doing
 from ..temporary import private_directory
@@ -125,7 +126,9 @@ def load_c(source: str, *options: str) -> ctypes.CDLL:
         try:
             return ctypes.CDLL(str(library))
         except OSError as error:
-            raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"it made no library; {error}") from None
+            raise HolonomError(
+                ErrorKind.COMPILER_UNUSABLE, detail=translatable("it made no library; %(reason)s", reason=error)
+            ) from None
 
 
 def unload(library: ctypes.CDLL) -> None:
@@ -165,15 +168,20 @@ def compile_shared(sources: Sequence[Path], library: Path, *options: str) -> Non
             status = run_process(command, Place(library.parent, os.environ, COMPILER_LIMITS), messages)
     except LimitExceeded as exceeded:
         raise HolonomError(
-            ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} took more than {exceeded.detail}"
+            ErrorKind.COMPILER_UNUSABLE,
+            detail=translatable("%(command)s took more than %(limit)s", command=command[0], limit=exceeded.detail),
         ) from None
     except OSError as error:
         raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]}: {error.strerror}") from None
     if status != 0:
         shown = " ".join(messages.decode(errors="replace").split())[:SHOWN]
-        raise HolonomError(ErrorKind.COMPILER_REFUSED, detail=shown or f"exit status {status}")
+        raise HolonomError(
+            ErrorKind.COMPILER_REFUSED, detail=shown or translatable("exit status %(status)s", status=status)
+        )
     if not library.exists():
-        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"{command[0]} made no library")
+        raise HolonomError(
+            ErrorKind.COMPILER_UNUSABLE, detail=translatable("%(command)s made no library", command=command[0])
+        )
 
 
 def has_compiler() -> bool:
@@ -207,5 +215,5 @@ def _words(command: str) -> list[str]:
     except ValueError:
         words = []
     if not words:
-        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=f"CC is '{command}'")
+        raise HolonomError(ErrorKind.COMPILER_UNUSABLE, detail=translatable("CC is '%(command)s'", command=command))
     return words

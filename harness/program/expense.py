@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..sandbox import MIB
 from ..supervisor import limit_expected_time
 from .heyoka_function import dynamics, import_heyoka, zero_multipliers
@@ -74,5 +75,12 @@ def require_means(problem: MotionProblem, precision: Precision, order: int) -> N
     needed = len(counted.decomposition) * (order + 1) * (bits / 8 + BYTES_BESIDE_DIGITS) / MIB
     free = psutil.virtual_memory().available / MIB
     if needed > free:
-        estimate = f"an expansion in {precision.digits} digits takes about {needed:.0f} MiB of memory"
-        raise HolonomError(ErrorKind.MEMORY_TOO_SMALL, detail=f"{estimate}, and {free:.0f} are free")
+        estimate = translatable(
+            "an expansion in %(digits)s digits takes about %(size)s MiB of memory",
+            digits=precision.digits,
+            size=f"{needed:.0f}",
+        )
+        raise HolonomError(
+            ErrorKind.MEMORY_TOO_SMALL,
+            detail=translatable("%(estimate)s, and %(free)s are free", estimate=estimate, free=f"{free:.0f}"),
+        )

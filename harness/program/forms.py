@@ -10,6 +10,7 @@ from ..extras import naming_the_extra
 from ..failures import ErrorKind, HolonomError
 from ..files import write_files, write_whole
 from ..formats import Document
+from ..language import translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
 from .identifiers import default_name
@@ -191,7 +192,9 @@ class MotionProgram:
             is not Python. Also for the reasons of `to_c`.
         """
         if package and (form != "python" or package not in MODULES):
-            raise HolonomError(ErrorKind.NO_SUCH_MODULE, detail=f"{package} with {form}")
+            raise HolonomError(
+                ErrorKind.NO_SUCH_MODULE, detail=translatable("%(package)s with %(form)s", package=package, form=form)
+            )
         module = None if form == JSON else target(f"{form}_{package}" if package else form)
         if hasattr(module, "write_model"):
             from .model import scene_model

@@ -15,6 +15,7 @@ from ..described import Correction
 from ..documents import ask
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
+from ..language import Message, translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
 from ..structs import structured
@@ -68,7 +69,7 @@ class ParametricStart:
     program: Program | None
     origins: Mapping[str, Origin]
     # why the initial state cannot be adapted to the parameters; there is a program where it can
-    obstruction: str | None
+    obstruction: Message | None
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ class MotionProblem:
     start: Mapping[str, str]
     # the given value whose last digits were corrected most to satisfy the constraints, and the correction
     correction: Correction | None
-    obstruction: str | None  # why no order of pivots solves the equations of motion; None where one does
+    obstruction: Message | None  # why no order of pivots solves the equations of motion; None where one does
     # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
     motion: Program | None
     # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that meets
@@ -251,7 +252,9 @@ def require_analytic(problem: MotionProblem) -> None:
     """
     require_signs_known(problem)
     if problem.reacting:
-        raise HolonomError(ErrorKind.REACTING, problem.scene, detail="and the motion is not integrated by switching")
+        raise HolonomError(
+            ErrorKind.REACTING, problem.scene, detail=translatable("and the motion is not integrated by switching")
+        )
     if problem.released:
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.released[0].of)
     if problem.tables:

@@ -21,6 +21,7 @@ from typing import Any
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read, require
 from ..functions import FUNCTIONS
+from ..language import translatable
 from ..structs import structured
 from .request import Solve
 
@@ -264,7 +265,7 @@ def _takes(head: object, arguments: int) -> bool:
 def _atom(tree: object) -> Atom:
     if isinstance(tree, str):
         if tree in ("ImaginaryUnit", "True", "False"):
-            raise _error(f"{tree} is not a real number")
+            raise _error(translatable("%(tree)s is not a real number", tree=tree))
         return Constant(tree) if tree in CONSTANTS else Name(tree)
     match tree:
         case ["Rational", numerator, denominator] if _number(denominator):
@@ -276,13 +277,13 @@ def _atom(tree: object) -> Atom:
 def _number(tree: object) -> Fraction:
     match tree:
         case bool():
-            raise _error(f"{tree} is not a number")
+            raise _error(translatable("%(tree)s is not a number", tree=tree))
         case int():
             return Fraction(tree)
         case {"num": str(digits), **rest} if not rest and len(digits) < LONGEST_NUMBER and DECIMAL.fullmatch(digits):
             return Fraction(digits)
         case _:
-            raise _error(f"{_shown(str(tree))} is not an expression that a program can hold")
+            raise _error(translatable("%(tree)s is not an expression that a program can hold", tree=_shown(str(tree))))
 
 
 def _within_double(number: Fraction) -> Fraction:
@@ -298,7 +299,7 @@ def _require_straight_line(program: Program) -> None:
     for name, expression in program.assignments:
         _require_known(names_in(expression), known)
         if name in known:
-            raise _error(f"{name} is computed twice")
+            raise _error(translatable("%(name)s is computed twice", name=name))
         known.add(name)
     for value in program.outputs.values():
         _require_known(names_in(value), known)
@@ -306,7 +307,7 @@ def _require_straight_line(program: Program) -> None:
 
 def _require_known(names: Set[str], known: Set[str]) -> None:
     if not names <= known:
-        raise _error(f"{min(names - known)} is used before it is computed")
+        raise _error(translatable("%(name)s is used before it is computed", name=min(names - known)))
 
 
 def _error(detail: str) -> HolonomError:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from .heyoka_function import import_heyoka
 
 GUARD_DIGITS = 10  # given and computed with beyond the digits asked for
@@ -77,7 +78,11 @@ def read_precision(text: str) -> Precision:
     if not text.isdecimal() or len(text) > len(str(MOST_DIGITS)) or not 1 <= int(text) <= MOST_DIGITS:
         raise HolonomError(
             ErrorKind.NOT_A_PRECISION,
-            detail=f"{text}: expected double, extended, quadruple, or from 1 to {MOST_DIGITS} digits",
+            detail=translatable(
+                "%(text)s: expected double, extended, quadruple, or from 1 to %(most)s digits",
+                text=text,
+                most=MOST_DIGITS,
+            ),
         )
     return _of_digits(int(text))
 
@@ -88,7 +93,9 @@ def _double() -> Precision:
 
 def _extended() -> Precision:
     if np.finfo(np.longdouble).nmant != 63:
-        raise HolonomError(ErrorKind.NOT_A_PRECISION, detail="extended precision is not available on this machine")
+        raise HolonomError(
+            ErrorKind.NOT_A_PRECISION, detail=translatable("extended precision is not available on this machine")
+        )
     return _binary("extended", 64, 16445, np.longdouble, _scientific(21), {"fp_type": np.longdouble})
 
 

@@ -18,6 +18,7 @@ import mpmath
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
@@ -92,7 +93,10 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     coefficients = integrator.tc
     if not np.all(np.isfinite(coefficients)):
         raise HolonomError(
-            ErrorKind.ORDER_TOO_HIGH, detail=f"the coefficients leave the range of {precision.name} or are singular"
+            ErrorKind.ORDER_TOO_HIGH,
+            detail=translatable(
+                "the coefficients leave the range of %(precision)s or are singular", precision=precision.name
+            ),
         )
     coordinates = zip(problem.coordinates, coefficients, strict=False)
     rates = zip(_reactions(problem), map(_rate, coefficients[len(problem.state) :]), strict=True)
@@ -183,7 +187,12 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     """
     if order > precision.highest_order:
         raise HolonomError(
-            ErrorKind.ORDER_TOO_HIGH, detail=f"in {precision.name} heyoka reaches order {precision.highest_order}"
+            ErrorKind.ORDER_TOO_HIGH,
+            detail=translatable(
+                "in %(precision)s heyoka reaches order %(order)s",
+                precision=precision.name,
+                order=precision.highest_order,
+            ),
         )
     heyoka = import_heyoka()
     variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
@@ -260,7 +269,13 @@ def _texts(row: Sequence[Any], precision: Precision) -> NumberTexts:
 
 def _raise_error(time_point: float, states: int) -> None:
     many = states > MOST_STEPS
-    reason = f"it arrived after {MOST_STEPS} steps" if many else "its radius of convergence shrinks to nothing"
+    few = translatable("its radius of convergence shrinks to nothing")
+    reason = translatable("it arrived after %(steps)s steps", steps=MOST_STEPS) if many else few
     raise HolonomError(
-        ErrorKind.NO_CONTINUATION, detail=f"the motion cannot be continued beyond t = {time_point:.10g}, where {reason}"
+        ErrorKind.NO_CONTINUATION,
+        detail=translatable(
+            "the motion cannot be continued beyond t = %(time)s, where %(reason)s",
+            time=f"{time_point:.10g}",
+            reason=reason,
+        ),
     )

@@ -15,6 +15,7 @@ import mpmath
 
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, Publication, published, read
+from ..language import translatable
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
 from ..shown import Shown
@@ -175,8 +176,13 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
         if math.isinf(left_out):
             raise HolonomError(
                 ErrorKind.BEYOND_RADIUS,
-                detail=f"the terms of the series about t = {motion.t0} do not fall at t = {float(time):g}; "
-                f"its radius of convergence is {motion.radius.note}",
+                detail=translatable(
+                    "the terms of the series about t = %(start)s do not fall at t = %(time)s; "
+                    "its radius of convergence is %(note)s",
+                    start=motion.t0,
+                    time=f"{float(time):g}",
+                    note=motion.radius.note,
+                ),
             )
         sums = {name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()}
         return Values(time, sums, left_out)
@@ -236,11 +242,19 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
     if radius.estimate is None or distance < radius.estimate - radius.uncertainty:
         return
     nearest = ", ".join(f"{float(number(motion.t0)) + z.real:.6g}{z.imag:+.6g}i" for z in radius.singularities)
-    reason = f"its nearest singularities are at {nearest}" if nearest else radius.note
+    at_nearest = translatable("its nearest singularities are at %(nearest)s", nearest=nearest)
+    reason = at_nearest if nearest else radius.note
     raise HolonomError(
         ErrorKind.BEYOND_RADIUS,
-        detail=f"the series about t = {motion.t0} does not converge at t = {float(time):g}: its radius of convergence "
-        f"is {radius.estimate:.6g}, {described(radius)}; {reason}",
+        detail=translatable(
+            "the series about t = %(start)s does not converge at t = %(time)s: "
+            "its radius of convergence is %(radius)s, %(evidence)s; %(reason)s",
+            start=motion.t0,
+            time=f"{float(time):g}",
+            radius=f"{radius.estimate:.6g}",
+            evidence=described(radius),
+            reason=reason,
+        ),
     )
 
 

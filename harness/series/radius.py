@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 
-from ..language import translatable
+from ..language import Message, translatable
 
 LAGS = (1, 2, 4)  # singularities that a recurrence knows
 FEWEST = 12  # fewest coefficients from which a radius is estimated
@@ -104,7 +104,7 @@ def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
     return _of_so_many(_first_end([_radius_of(coefficients) for coefficients in rows]), len(rows[0]) if rows else 0)
 
 
-def described(radius: Radius) -> str:
+def described(radius: Radius) -> Message:
     """Return the evidence for a radius, in words.
 
     Parameters
@@ -114,13 +114,17 @@ def described(radius: Radius) -> str:
 
     Returns
     -------
-    str
+    Message
     """
     if radius.located:
-        return "where the equations of motion are singular"
-    return (
-        f"estimated from {radius.coefficients} coefficients, whose fits differ by {radius.uncertainty:.1g}; "
-        f"a singularity at {NEARER} of it that is weaker than {radius.unseen:.1g} of the one found is not seen"
+        return translatable("where the equations of motion are singular")
+    return translatable(
+        "estimated from %(coefficients)s coefficients, whose fits differ by %(uncertainty)s; "
+        "a singularity at %(nearer)s of it that is weaker than %(unseen)s of the one found is not seen",
+        coefficients=radius.coefficients,
+        uncertainty=f"{radius.uncertainty:.1g}",
+        nearer=NEARER,
+        unseen=f"{radius.unseen:.1g}",
     )
 
 

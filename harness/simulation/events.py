@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.motion_program import Program, names_in
 from ..program.precision import Precision
 from .engines.engine import Step
@@ -200,7 +201,10 @@ class Events(SignedFunctions):
             self._reject(found.name, found.t)
 
     def _reject(self, name: str, t: Any) -> None:
-        raise HolonomError(ErrorKind.NO_EVENT_VALUE, detail=f"{name} at t = {float(t):.10g}")
+        raise HolonomError(
+            ErrorKind.NO_EVENT_VALUE,
+            detail=translatable("%(name)s at t = %(time)s", name=name, time=f"{float(t):.10g}"),
+        )
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the expressions whose side is known, each times its sign.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, Origin, computing
 from ..program.sign_pattern import at_start, problem_in
 from .evaluation import Numbers, batch_evaluation
@@ -362,14 +363,18 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         none for these values.
     """
     if Origin.CONTINUED in problem.parametric_start.origins.values():
-        reason = "no closed form gives it for all values of the parameters; put near values into initial_guess"
+        reason = translatable(
+            "no closed form gives it for all values of the parameters; put near values into initial_guess"
+        )
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
     numbers = np.array([[float(complete[name])] for name in problem.parameters])
     initial_states = initial_states_of(problem)
     starts = initial_states(numbers)
     if not starts.found[0]:
-        raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, "no state satisfies the constraints")
+        raise HolonomError(
+            ErrorKind.NO_INITIAL_STATE, problem.scene, translatable("no state satisfies the constraints")
+        )
     found = started(problem, complete, starts.states[:, 0])
     correction, moved = (told(numbers, starts.states) for told in (initial_states.correction, initial_states.moved))
     return replace(found, correction=correction, moved=moved or problem.moved)

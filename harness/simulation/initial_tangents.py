@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.differentiation import derivative_name, differentiated
 from ..program.motion_problem import MotionProblem
 from ..program.numpy_function import NumpyFunction
@@ -82,7 +83,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
                 if (np.abs(constraints(t, state, moves)[half][:, k]) <= CONSISTENT * terms).all():
                     break
             else:
-                reason = f"the constraints do not let the initial values follow {name}"
+                reason = translatable("the constraints do not let the initial values follow %(name)s", name=name)
                 raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     return moves
 
@@ -128,7 +129,7 @@ def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64
     if direction in problem.state or problem.moved is None or float(problem.moved[1]) == 0:
         return
     if np.linalg.matrix_rank(at.jacobian[:, free]) < len(free):
-        reason = "it is the nearest of many to initial_guess; give more of it in initial_state"
+        reason = translatable("it is the nearest of many to initial_guess; give more of it in initial_state")
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
 
 

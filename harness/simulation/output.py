@@ -22,6 +22,7 @@ from ..failures import ErrorKind, HolonomError
 from ..files import whole_file
 from ..formats import Publication, published
 from ..hidden import visible_line
+from ..language import translatable
 from ..program.motion_problem import MotionProblem
 from ..sandbox import MIB
 from .result import Report, Sampled, Simulation
@@ -81,7 +82,13 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
     needed = samples * numbers * BYTES_OF_NUMBER / MIB
     if needed > memory_mib:
         room = int(memory_mib * MIB / (numbers * BYTES_OF_NUMBER))
-        estimate = f"{samples} samples take about {needed:.0f} MiB of memory, and there are {memory_mib} for {room}"
+        estimate = translatable(
+            "%(samples)s samples take about %(size)s MiB of memory, and there are %(free)s for %(room)s",
+            samples=samples,
+            size=f"{needed:.0f}",
+            free=memory_mib,
+            room=room,
+        )
         raise HolonomError(ErrorKind.TOO_MANY_SAMPLES, detail=estimate)
 
 
@@ -106,9 +113,18 @@ def require_disk(problem: MotionProblem, samples: int, path: Path) -> None:
     free = shutil.disk_usage(folder).free / MIB
     size = _numbers_a_sample(problem) * BYTES_ON_DISK[path.suffix]
     if samples * size / MIB > free:
-        estimate = f"{samples} samples take about {samples * size / MIB:.0f} MiB of disk"
+        estimate = translatable(
+            "%(samples)s samples take about %(size)s MiB of disk", samples=samples, size=f"{samples * size / MIB:.0f}"
+        )
         raise HolonomError(
-            ErrorKind.DISK_TOO_SMALL, path, f"{estimate}, and {folder} has room for {int(free * MIB / size)}"
+            ErrorKind.DISK_TOO_SMALL,
+            path,
+            translatable(
+                "%(estimate)s, and %(folder)s has room for %(count)s",
+                estimate=estimate,
+                folder=folder,
+                count=int(free * MIB / size),
+            ),
         )
 
 

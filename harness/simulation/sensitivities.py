@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.differentiation import derivative_name, differentiated
 from ..program.heyoka_function import heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem, computing
@@ -67,7 +68,10 @@ class _ModeVariation:
         if self.problem.obstruction is not None:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=self.problem.obstruction)
         if closed := [name for name in directions if name not in (*self.problem.parameters, *self.problem.state)]:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"the equations are made for one value of {closed[0]}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("the equations are made for one value of %(name)s", name=closed[0]),
+            )
         self.constraints = ConstraintVariation(self.problem, directions)
         self.inputs = Inputs(self.problem)
         self._tolerance = tolerance_of(self.problem, tol)
@@ -115,7 +119,10 @@ class _ModeVariation:
         integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are not finite beyond t = {start:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
+            )
         piece = _Segment(start, end, self, between)
         self._compile_if_worthwhile(steps * left / (end - start))
         return piece
@@ -174,7 +181,10 @@ class _ModeVariation:
         solved = self.mode.engine.solutions(times, states).multipliers
         *changes, rate = variation(times, states, along_it, solved)[0, :, 0]
         if not rate:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"a zero is only touched at t = {t:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("a zero is only touched at t = %(time)s", time=f"{t:.10g}"),
+            )
         return -np.array(changes) / rate
 
     def at_moving_time(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
@@ -225,7 +235,7 @@ class Sensitivities:
             detail = f"unknown name {unknown[0]}: it is neither a parameter nor one of {', '.join(problem.state)}"
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
         if problem.reacting:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail="forces contain multipliers")
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=translatable("forces contain multipliers"))
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
         self._nominal = nominal_of(begun.problem)
@@ -312,7 +322,10 @@ class Sensitivities:
                 rows = np.array(piece.states(times[inside]))[:, len(states) :]
                 moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
         if np.isnan(moves).any():
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"they are not known to t = {times[-1]:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("they are not known to t = %(time)s", time=f"{times[-1]:.10g}"),
+            )
         return here.derivatives(times, states, moves)
 
     def _of(self, mode: Mode) -> _ModeVariation:
@@ -334,7 +347,10 @@ class Sensitivities:
         """Reject derivatives if their motion differs from the recorded one."""
         allowed = max(DISTANCE, TOLERATED * (self._tol or 0.0))
         if self._state is not None and self._nominal.share(state - self._state, state) > allowed:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"steps become too coarse at t = {self._time:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("steps become too coarse at t = %(time)s", time=f"{self._time:.10g}"),
+            )
 
     def _at_knot(self, step: Step) -> bool:
         """Return True if a table's next polynomial begins with a step."""
@@ -349,7 +365,9 @@ class Sensitivities:
         before, after = self._here, self._of(step.mode)
         t, state = self._time, step.states(np.array([step.start]))[:, 0]
         if self._nominal.share(state - self._last, state) > CONTINUOUS:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"the velocities jump at t = {t:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY, detail=translatable("the velocities jump at t = %(time)s", time=f"{t:.10g}")
+            )
         surface = self._surface(before.mode, after.mode)
         if surface is not None:
             jump = before.rates(t, state) - after.rates(t, state)
@@ -368,7 +386,10 @@ class Sensitivities:
             return _Zero(before.problem, before.problem.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
         if len(changed) != 1:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=f"several signs change at t = {self._time:.10g}")
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("several signs change at t = %(time)s", time=f"{self._time:.10g}"),
+            )
         if before.pattern[changed[0]] == SLIDING:
             return None
         whole, pattern = before.whole, before.pattern

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
@@ -213,7 +214,10 @@ def last_time(problem: MotionProblem, until: Fraction | None, precision: Precisi
         raise HolonomError(ErrorKind.NO_END, problem.scene)
     end = precision.number(problem.time_span[1]) if until is None else precision.ratio(until)
     if not end > precision.number(problem.start["t"]):
-        raise HolonomError(ErrorKind.NOT_AFTER_START, detail=f"{float(end):g} is not after {problem.start['t']}")
+        raise HolonomError(
+            ErrorKind.NOT_AFTER_START,
+            detail=translatable("%(end)s is not after %(start)s", end=f"{float(end):g}", start=problem.start["t"]),
+        )
     if problem.law_end is not None and end > precision.number(problem.law_end):
         raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{float(problem.law_end):.10g}")
     return end

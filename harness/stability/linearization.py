@@ -25,6 +25,7 @@ import numpy as np
 import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.drawing import Drawing
 from ..program.motion_problem import MotionProblem, computing, require_analytic
 from ..program.motion_program import names_used
@@ -513,7 +514,11 @@ def simulated(problem: MotionProblem, request: SimulationRequest) -> Simulation:
     motion = simulate(problem, request)
     report = motion.report
     if report.ending is not None and request.until is not None and report.t < request.until:
-        raise HolonomError(ErrorKind.NOT_REACHED, time=float(request.until), detail=f"it ends at t = {report.t:.10g}")
+        raise HolonomError(
+            ErrorKind.NOT_REACHED,
+            time=float(request.until),
+            detail=translatable("it ends at t = %(end)s", end=f"{report.t:.10g}"),
+        )
     if report.violations:
         raise HolonomError(ErrorKind.NOT_REACHED, time=float(report.t), detail=report.violations[0].reason)
     return motion

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from ..failures import ErrorKind, HolonomError
 from ..files import DRAFTS, append_line, write_whole
 from ..formats import Publication, published, require
+from ..language import translatable
 
 if TYPE_CHECKING:
     import pyarrow
@@ -173,7 +174,11 @@ class SweepFolder:
         there = read_document(self.path)
         for name, value in self.document.items():
             if without_places(there.get(name)) != without_places(value):
-                raise HolonomError(ErrorKind.OTHER_SWEEP, self.path, f"its {name} is {_shown(there.get(name))}")
+                raise HolonomError(
+                    ErrorKind.OTHER_SWEEP,
+                    self.path,
+                    translatable("its %(name)s is %(value)s", name=name, value=_shown(there.get(name))),
+                )
 
 
 def read_document(folder: Path) -> dict[str, Any]:

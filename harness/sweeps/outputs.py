@@ -24,6 +24,7 @@ from fractions import Fraction
 from math import isfinite
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..options import within_reach
 from ..program.motion_program import CALLED, Call, Constant, Expression, Name, Operation
 
@@ -127,7 +128,9 @@ def _quantity(item: str) -> OutputQuantity:
         case ast.Call(ast.Name("d"), [quantity, direction], []):
             what, by = (_expression(each, text) for each in (quantity, direction))
             if not isinstance(what, Name) or not isinstance(by, Name):
-                raise _error(text, "is not a derivative of one quantity by one parameter or initial value")
+                raise _error(
+                    text, translatable("this is not a derivative of one quantity by one parameter or initial value")
+                )
             return OutputQuantity(text, Kind.DERIVATIVE, what, direction=by.text)
         case ast.Call(ast.Name("at"), [quantity, _], []):
             inside, _, time = text[len("at(") : -1].rpartition(",")
@@ -142,12 +145,14 @@ def _tree(text: str) -> ast.expr:
             raise ValueError
         return ast.parse(text.replace("^", "**"), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise _error(text or "nothing", "is not an expression") from None
+        raise _error(text or translatable("nothing"), translatable("this is not an expression")) from None
 
 
 def _analytic(tree: ast.expr, text: str) -> Expression:
     if any(isinstance(node, ast.Name) and node.id == "abs" for node in ast.walk(tree)):
-        raise _error(text, "contains abs inside of a quantity along the motion; only max(abs(...)) may")
+        raise _error(
+            text, translatable("it contains abs inside of a quantity along the motion; only max(abs(...)) may")
+        )
     return _expression(tree, text)
 
 
@@ -170,7 +175,9 @@ def _expression(tree: ast.expr, text: str) -> Expression:
         case ast.Constant(int(value) | float(value)) if _is_number(value):
             return Fraction(repr(value))
         case _:
-            raise _error(text, "is made of something else than numbers, + - * / ^, functions and quantities")
+            raise _error(
+                text, translatable("it is made of something else than numbers, + - * / ^, functions and quantities")
+            )
 
 
 def _is_number(value: int | float) -> bool:
@@ -179,12 +186,14 @@ def _is_number(value: int | float) -> bool:
 
 def _time(written: str, text: str) -> Fraction:
     if not re.fullmatch(r"-?\d+(\.\d*)?(/\d+)?", written) or not within_reach(written):
-        raise _error(text, "names no time")
+        raise _error(text, translatable("it names no time"))
     try:
         return Fraction(written)
     except ZeroDivisionError:
-        raise _error(text, "names no time") from None
+        raise _error(text, translatable("it names no time")) from None
 
 
 def _error(text: str, reason: str) -> HolonomError:
-    return HolonomError(ErrorKind.NOT_AN_OUTPUT, detail=f"{text[:60]} {reason}")
+    return HolonomError(
+        ErrorKind.NOT_AN_OUTPUT, detail=translatable("%(text)s: %(reason)s", text=text[:60], reason=reason)
+    )

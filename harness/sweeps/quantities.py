@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.heyoka_function import heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, Program, names_in
@@ -30,7 +31,10 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
             raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT, detail=f"unknown quantity {unknown[0]}: expected one of {', '.join(there)}"
+                ErrorKind.NOT_AN_OUTPUT,
+                detail=translatable(
+                    "unknown quantity %(name)s: expected one of %(names)s", name=unknown[0], names=", ".join(there)
+                ),
             )
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ..explanations import unresolved
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, computing, require_analytic
@@ -115,7 +116,8 @@ class RowMaker:
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT, detail=f"{taken[0]} is a column of every sweep; give another name to it"
+                ErrorKind.NOT_AN_OUTPUT,
+                detail=translatable("%(name)s is a column of every sweep; give another name to it", name=taken[0]),
             )
 
     @property
@@ -331,7 +333,10 @@ class RowMaker:
         if not self._start <= time <= self._end:
             span = f"{self._start:.10g} to {self._end:.10g}"
             raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT, detail=f"{output.text} asks for a time outside of the motion, {span}"
+                ErrorKind.NOT_AN_OUTPUT,
+                detail=translatable(
+                    "%(text)s asks for a time outside of the motion, %(span)s", text=output.text, span=span
+                ),
             )
         return time
 
@@ -420,7 +425,11 @@ def _require_smooth(problem: MotionProblem, recorded: Sequence[OutputQuantity]) 
             if _has_corners(computing(problem.outputs, {name})):
                 raise HolonomError(
                     ErrorKind.NOT_AN_OUTPUT,
-                    detail=f"{each.text} contains {name}, which has a corner and can be recorded at times only",
+                    detail=translatable(
+                        "%(text)s contains %(name)s, which has a corner and can be recorded at times only",
+                        text=each.text,
+                        name=name,
+                    ),
                 )
 
 
@@ -437,7 +446,13 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuan
         ):
             if name not in known:
                 raise HolonomError(
-                    ErrorKind.NOT_AN_OUTPUT, detail=f"{output.text} contains {name}: expected one of {', '.join(known)}"
+                    ErrorKind.NOT_AN_OUTPUT,
+                    detail=translatable(
+                        "%(text)s contains %(name)s: expected one of %(names)s",
+                        text=output.text,
+                        name=name,
+                        names=", ".join(known),
+                    ),
                 )
 
 

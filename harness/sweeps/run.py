@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..processes import usable_cores
 from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, problem_document, read_problem
 from ..program.precision import read_precision
@@ -183,7 +184,10 @@ def _derived(source: Source, request: Request, axes: Axes) -> str:
 
 def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
     if foreign := [name for name in axes.names if name not in problem.parameters]:
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=f"unknown parameter {foreign[0]} of {problem.scene}")
+        raise HolonomError(
+            ErrorKind.NOT_AN_AXIS,
+            detail=translatable("unknown parameter %(name)s of %(scene)s", name=foreign[0], scene=problem.scene),
+        )
 
 
 def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> dict[str, Any]:

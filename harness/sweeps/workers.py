@@ -15,6 +15,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from ..failures import ErrorKind, HolonomError
+from ..language import translatable
 from ..simulation.evaluation import one_blas_thread
 from .dataset import Chunk, part_of
 from .rows import Plan, RowMaker
@@ -54,7 +55,7 @@ def require_address(scheduler: str | None) -> None:
         return
     found = ADDRESS.fullmatch(scheduler)
     if not found or int(found["port"]) not in PORTS:
-        raise HolonomError(ErrorKind.NOT_A_SCHEDULER, detail=scheduler or "nothing")
+        raise HolonomError(ErrorKind.NOT_A_SCHEDULER, detail=scheduler or translatable("nothing"))
 
 
 def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, scheduler: str | None) -> None:
@@ -225,4 +226,4 @@ def _loss_reported() -> Iterator[None]:
 
 
 def _first_line(error: BaseException) -> str:
-    return next(iter(str(error).splitlines()), "") or "they do not answer"
+    return next(iter(str(error).splitlines()), "") or translatable("they do not answer")

@@ -279,7 +279,7 @@
           (t (obstruction (if *binary-digits* '$not_real '$irrational) e assignment)))))
 
 (defun require-nonzero (value assignment)
-  (if (eql value 0) (obstruction '$singular "a division by zero" assignment)))
+  (if (eql value 0) (obstruction '$singular (mfuncall '$division_by_zero) assignment)))
 
 (defun obstruction (kind e assignment)
   "Ends the expansion: what is in its way, the text of it, the assignment it was met in."

@@ -43,10 +43,10 @@ DRAWN = UNDRAWN.replace("[y - u*x])$", "[y - u*x], drawing = [point([x, y])])$")
 TEXTS = {"my system": SMOOTH, "rough": ROUGH, "unconstrained": UNCONSTRAINED, "drawn": DRAWN, "undrawn": UNDRAWN}
 
 
-def made(folder: Path, texts: Mapping[str, str], *others: Path) -> tuple[Result, Path]:
+def made(folder: Path, texts: Mapping[str, str], *others: Path, language: str = "en") -> tuple[Result, Path]:
     """The command's outcome and the directory of the pages, of texts by the names of their files and of other files."""
     files = [folder / f"{name}.mac" for name in texts]
     for file, text in zip(files, texts.values(), strict=True):
         file.write_text(text, encoding="utf-8")
-    arguments = ["companion", *map(str, (*files, *others)), "-o", str(folder / "pages")]
+    arguments = ["companion", *map(str, (*files, *others)), "-o", str(folder / "pages"), "--language", language]
     return CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False), folder / "pages"

@@ -1,6 +1,7 @@
 """The pages in other languages: all their prose goes through the catalog, and each has its twin."""
 
 import re
+from collections.abc import Collection
 from gettext import NullTranslations
 from xml.etree.ElementTree import Element, fromstring
 
@@ -139,12 +140,12 @@ def bracketed(results, tmp_path_factory):
     return directory
 
 
-def prose(element: Element) -> str:
-    """The text of an element without mathematics, code and what says that it is English."""
+def prose(element: Element, others: Collection[str] = CODE) -> str:
+    """The text of an element without mathematics, code and other elements, and what says that it is English."""
     text = element.text or ""
     for each in element:
-        left_out = each.tag in CODE or each.get("lang") == "en" or each.get("class") == "headerlink"
-        text += " " + ("" if left_out else prose(each)) + " " + (each.tail or "")
+        left_out = each.tag in others or each.get("lang") == "en" or each.get("class") == "headerlink"
+        text += " " + ("" if left_out else prose(each, others)) + " " + (each.tail or "")
     return text
 
 

@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 
 from ...failures import ErrorKind, HolonomError
 from ...hidden import visible
+from ...language import translatable
 from ...temporary import private_directory
 from ..c_function import compile_shared
 from ..c_source import range_of
@@ -179,7 +180,9 @@ def _require_start(model: Model) -> None:
         if name not in model.values:
             raise HolonomError(ErrorKind.INPUT_MISSING, detail=name)
     if model.start is None:
-        raise HolonomError(ErrorKind.INPUT_MISSING, detail="a parameter that the initial state depends on")
+        raise HolonomError(
+            ErrorKind.INPUT_MISSING, detail=translatable("a parameter that the initial state depends on")
+        )
 
 
 def _compiled(sources: dict[str, str], name: str) -> bytes:

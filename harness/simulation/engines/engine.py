@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 from numpy.typing import NDArray
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision
 from ..evaluation import Numbers
@@ -44,7 +45,10 @@ def require_reach(steps: int, done: Any, left: Any) -> None:
     """
     if steps >= ESTIMATED_AFTER and steps * float(left) > MOST_STEPS * float(done):
         about = steps * float(left) / float(done) if done > 0 else inf
-        raise HolonomError(ErrorKind.TOO_MANY_STEPS, detail=f"the motion takes about {about:.0e} steps to its end")
+        raise HolonomError(
+            ErrorKind.TOO_MANY_STEPS,
+            detail=translatable("the motion takes about %(about)s steps to its end", about=f"{about:.0e}"),
+        )
 
 
 class Step(NamedTuple):

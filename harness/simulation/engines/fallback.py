@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ..evaluation import Numbers, as_floats
 from ..hard_cases import Difficulty
 from ..request import EngineName
@@ -179,7 +180,10 @@ class FallbackEngine:
         obstruction, request = self._task.problem.obstruction, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstruction is None else FALLBACK
         if self._task.problem.reacting and (obstruction is not None or chosen == FALLBACK):
-            raise HolonomError(ErrorKind.REACTING, detail=f"and the robust engine is needed: {obstruction or chosen}")
+            raise HolonomError(
+                ErrorKind.REACTING,
+                detail=translatable("and the robust engine is needed: %(reason)s", reason=obstruction or chosen),
+            )
         if obstruction is not None and engine_class(chosen).fixed_pivots:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
         first = engine_class(chosen).for_motion(self._task)

@@ -115,9 +115,15 @@ class RobustEngine:
         """
         tol = task.request.tol
         if task.precision.name != "double":
-            raise HolonomError(ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstruction or "--engine asks for it")
+            raise HolonomError(
+                ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstruction or translatable("--engine asks for it")
+            )
         if tol is not None and not TIGHTEST <= tol < 1:
-            holds = f"the robust engine holds tolerances from {TIGHTEST:.1e} to 1, not {tol:g}"
+            holds = translatable(
+                "the robust engine holds tolerances from %(finest)s to 1, not %(tol)s",
+                finest=f"{TIGHTEST:.1e}",
+                tol=f"{tol:g}",
+            )
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
         return cls(task.problem, tol, task.matrices, task.request.max_step)
 

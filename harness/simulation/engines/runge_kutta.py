@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ...program.c_function import has_compiler, load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem, computing
@@ -94,7 +95,11 @@ class RungeKuttaEngine(ProgramEngine):
     ) -> None:
         super().__init__(problem, read_precision("double"), True, matrices)
         if tol is not None and not FINEST <= tol < 1:
-            holds = f"the Runge-Kutta engine holds tolerances from {FINEST:g} to 1, not {tol:g}"
+            holds = translatable(
+                "the Runge-Kutta engine holds tolerances from %(finest)s to 1, not %(tol)s",
+                finest=f"{FINEST:g}",
+                tol=f"{tol:g}",
+            )
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()

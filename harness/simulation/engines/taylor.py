@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...failures import ErrorKind, HolonomError
+from ...language import translatable
 from ...program.expense import HIGH_ORDER, order_for, require_means
 from ...program.heyoka_function import import_heyoka
 from ...program.motion_problem import MotionProblem, computing
@@ -390,6 +391,11 @@ def checked_tolerance(tol: float, precision: Precision) -> float:
     if not float(finest) <= tol < 1:
         raise HolonomError(
             ErrorKind.TOLERANCE_OUT_OF_RANGE,
-            detail=f"{precision.name} precision holds tolerances from {finest} to 1, not {tol:g}",
+            detail=translatable(
+                "%(precision)s precision holds tolerances from %(finest)s to 1, not %(tol)s",
+                precision=precision.name,
+                finest=finest,
+                tol=f"{tol:g}",
+            ),
         )
     return tol
