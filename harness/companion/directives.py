@@ -327,7 +327,7 @@ def _chapter_with_number(
 def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
     """Link the equations of a page, and add column names to its table cells."""
     partners = context.get("folders", {}).items()
-    context["twins"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
+    context["translations"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
     if "body" in context and app.builder.name == "html":
         body = context["body"].replace('="figures/', f'="{_up(name)}{FILES}/')
         context["body"] = with_columns(with_equations(body, _places_from(app, name)))

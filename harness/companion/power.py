@@ -19,14 +19,14 @@ class EnergyBalance:
 
     power: NDArray[np.float64]  # of the reactions, -lambda (df/dt + du/dt df/du)
     gained: NDArray[np.float64]  # kinetic energy since the initial time
-    # by_forces, by_knob: work of the forces and of the reactions since then
+    # by_forces, by_controls: work of the forces and of the reactions since then
     by_forces: NDArray[np.float64]
-    by_knob: NDArray[np.float64]
+    by_controls: NDArray[np.float64]
 
     @property
     def error(self) -> float:
         """The largest energy that no work accounts for."""
-        return float(np.max(np.abs(self.gained - self.by_forces - self.by_knob)))
+        return float(np.max(np.abs(self.gained - self.by_forces - self.by_controls)))
 
 
 def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBalance:
@@ -59,8 +59,8 @@ def energy_balance(system: System, scene: Scene, motion: Simulation) -> EnergyBa
         for expression in (reaction_power(described), power_of_forces(described), described.kinetic_energy)
     )
     times = motion.times.astype(float)
-    by_forces, by_knob = (cumulative_simpson(rate, x=times, initial=0.0) for rate in (forces, power))
-    return EnergyBalance(power, kinetic - kinetic[0], by_forces, by_knob)
+    by_forces, by_controls = (cumulative_simpson(rate, x=times, initial=0.0) for rate in (forces, power))
+    return EnergyBalance(power, kinetic - kinetic[0], by_forces, by_controls)
 
 
 def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[np.float64]:

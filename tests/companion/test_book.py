@@ -208,9 +208,11 @@ def test_numbers_that_exercises_need_are_on_their_page(companion, results):
         scene = scene_named(results[Run(derive, (PAPER,))], name)
         page = pages.parsed(companion / "book" / f"{slug}.html")
         exercises = next(each for each in page.iter("section") if each.get("id") == "exercises")
-        remarks = [each for each in exercises.iter("p") if each.get("class") == "remark"]
-        said = {each.get("alttext") for remark in remarks for each in remark.iter("math")}
-        assert {str(value) for value in (*scene.parameter_values.values(), *scene.initial_state.values())} <= said, slug
+        notes = [each for each in exercises.iter("p") if each.get("class") == "note"]
+        found = {each.get("alttext") for note in notes for each in note.iter("math")}
+        assert {str(value) for value in (*scene.parameter_values.values(), *scene.initial_state.values())} <= found, (
+            slug
+        )
 
 
 def test_words_of_the_index_lead_to_their_definitions(companion):
@@ -222,8 +224,8 @@ def test_words_of_the_index_lead_to_their_definitions(companion):
 
 
 def test_the_glossary_says_it_in_chinese_too(companion):
-    said = pages.words(companion / "book" / "further-reading.html")
-    assert all(word in said for word in ("自由运动", "初始运动", "多余坐标", "可控力学系统"))
+    found = pages.words(companion / "book" / "further-reading.html")
+    assert all(word in found for word in ("自由运动", "初始运动", "多余坐标", "可控力学系统"))
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""The pages in other languages: all their prose goes through the catalog, and each has its twin."""
+"""The pages in other languages: all their prose goes through the catalog, and each has its translation."""
 
 import re
 from collections.abc import Collection
@@ -37,14 +37,14 @@ CODE = {"code", "pre", "math", "script", "style", "select"}
 @pytest.fixture(scope="module")
 def partners(tmp_path_factory):
     """Directory of a companion in Chinese and English; a build takes nothing of the one before."""
-    directory = tmp_path_factory.mktemp("twins") / "pages"
+    directory = tmp_path_factory.mktemp("translations") / "pages"
     cabin = pages.REPOSITORY / "examples" / "weightless_cabin.mac"
     arguments = ["companion", str(cabin), "-o", str(directory), "--language", "zh", "--language", "en"]
     assert CliRunner(mix_stderr=False).invoke(holonom, arguments, standalone_mode=False).return_value == 0
     return directory
 
 
-def test_every_page_has_its_twin_and_names_its_language(partners):
+def test_every_page_has_its_translation_and_names_its_language(partners):
     english = {page.relative_to(partners / "en") for page in pages.pages(partners / "en")}
     assert {page.relative_to(partners) for page in pages.pages(partners)} == english | {"en" / page for page in english}
     for page in english:
@@ -54,12 +54,12 @@ def test_every_page_has_its_twin_and_names_its_language(partners):
     assert "自由运动" not in pages.words(partners / "en" / "free-motion.html")
 
 
-def test_every_page_links_its_twin_in_both_directions(partners):
+def test_every_page_links_its_translation_in_both_directions(partners):
     assert pages.broken_references(partners) == []
     for page in pages.pages(partners / "en"):
-        twin = partners / page.relative_to(partners / "en")
-        assert linked(page, "zh") == [twin.resolve()]
-        assert linked(twin, "en") == [page.resolve()]
+        partner = partners / page.relative_to(partners / "en")
+        assert linked(page, "zh") == [partner.resolve()]
+        assert linked(partner, "en") == [page.resolve()]
 
 
 def linked(page, hreflang: str) -> list:

@@ -35,7 +35,7 @@ def simulated(file, name, until):
 )
 def test_the_work_at_the_knob_is_what_the_energy_balance_lacks(file, scene):
     found = energy_balance(*simulated(EXAMPLES / file, scene, 3))
-    assert abs(found.by_knob[-1]) > 0.1
+    assert abs(found.by_controls[-1]) > 0.1
     assert found.error < 1e-9
 
 

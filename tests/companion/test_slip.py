@@ -38,7 +38,7 @@ def cards(results, tmp_path_factory):
 
 
 def verdicts(card):
-    return {found.verdict for instance in card.instances for found in instance.verdicts}
+    return {found.verdict for each in card.instances for found in each.verdicts}
 
 
 @pytest.mark.parametrize("anchor", ["eq-7", "eq-8", "eq-8-multipliers", "eq-9"])

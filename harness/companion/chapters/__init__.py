@@ -8,7 +8,7 @@ from ...files import shared
 EXAMPLES = shared("examples")
 PAPER = EXAMPLES / "paper/paper.mac"
 BEAD = EXAMPLES / "bead.mac"
-KNOB = EXAMPLES / "paper/knob.mac"
+TILTED_PLANE = EXAMPLES / "paper/knob.mac"
 PENDULUM = EXAMPLES / "pendulum.mac"
 
 FREE_SCENE = "free_motion_scene"

@@ -25,7 +25,7 @@ from .. import TEMPLATES
 from ..cards import named_equations, scene_named
 from ..chapter import FILES
 from ..runs import Derived, Run
-from . import KNOB
+from . import TILTED_PLANE
 from .radius_of_convergence import denominator
 
 LAWS = {"linear": "linear_scene", "exponential": "exponential_scene", "swinging": "swinging_scene"}
@@ -150,4 +150,4 @@ def _singular(found: Derived, name: str) -> Program:
     )
 
 
-RUNS = {"models": Run(models, (KNOB,)), "drawing": Run(_drawing_of, (KNOB, LAWS["linear"]))}
+RUNS = {"models": Run(models, (TILTED_PLANE,)), "drawing": Run(_drawing_of, (TILTED_PLANE, LAWS["linear"]))}

@@ -134,7 +134,7 @@ def test_a_drawing_moves_until_it_is_folded_away(exhibit):
     assert shown_pictures(exhibit) == ["still"]
 
 
-def test_whoever_wants_no_motion_is_shown_the_still_picture(browser, exhibit):
+def test_a_reader_without_motion_sees_the_still_picture(browser, exhibit):
     calm = [{"name": "prefers-reduced-motion", "value": "reduce"}]
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": calm})
     assert shown_pictures(exhibit) == ["still"]
