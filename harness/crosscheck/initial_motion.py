@@ -290,8 +290,11 @@ def at_start(checked: CheckedScene, pairs: Iterable[Pair]) -> tuple[Comparison, 
     pairs = tuple(pairs)
     if not pairs:
         return (Comparison(()),)
-    rounded = {name: value for name, value in state.items() if is_rounded(value)}
-    return (Comparison(pairs, given=given, rounded=rounded),)
+    return (Comparison(pairs, given=given, rounded=_rounded(state)),)
+
+
+def _rounded(values: Definitions) -> Definitions:
+    return {name: value for name, value in values.items() if is_rounded(value)}
 
 
 def is_rounded(value: sp.Expr) -> bool:
@@ -343,7 +346,11 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
         *_for_all_states(checked, checked.system.coordinates, checked.known.system.constraints, fixed),
         *_for_all_states(checked, checked.system.velocities, checked.known.constraint_derivatives, fixed),
     ]
-    always = Comparison(tuple(_vanishing(translatable("constraint"), residuals)), given={**fixed, **checked.start})
+    always = Comparison(
+        tuple(_vanishing(translatable("constraint"), residuals)),
+        given={**fixed, **checked.start},
+        rounded=_rounded(fixed),
+    )
     values = (Pair(name.name, fixed[name], name) for name in fixed)
     return always, *at_start(checked, values)
 

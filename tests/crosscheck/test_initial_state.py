@@ -164,3 +164,23 @@ scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span =
 """)
     report = check_record(derived_record(file), describe(file))
     assert Verdict.DISAGREES not in {found.verdict for found in report.verdicts}
+
+
+GUESSED = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [x^2 + y^2 + x*y^3 - u^2])$
+scene : holonomic_scene(system, control_law = [u = 2 + t], initial_guess = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+def test_rounded_values_alone_satisfy_a_constraint_up_to_rounding(tmp_path):
+    """A residual of 4e-61, all of whose numbers were found, was called a disagreement."""
+    file = tmp_path / "scene.mac"
+    file.write_text(GUESSED)
+    record, description = derived_record(file), describe(file)
+    (scene,) = record.scenes
+    assert verdicts(record, description, scene)["19"] is Verdict.AGREES
+    first, *others = fixed_values(scene).relations
+    moved = Relation(first.left_tree, ["Add", first.right_tree, ["Power", 10, -45]])
+    assert verdicts(record, description, with_relations(scene, (moved, *others)))["19"] is Verdict.DISAGREES
