@@ -85,7 +85,7 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
     console.print(table)
     for found in report.verdicts:
         if found.verdict in ("disagrees", "undecided"):
-            console.print(f"({found.number}) {found.name}: {found.detail}", soft_wrap=True)
+            console.print(f"{_title(found.number, found.name)}: {found.detail}", soft_wrap=True)
     for left_out in dict.fromkeys(found.left_out for found in report.verdicts if found.left_out):
         numbers = dict.fromkeys(f"({found.number})" for found in report.verdicts if found.left_out == left_out)
         line = f"{', '.join(numbers)} left out: {why_left_out(left_out)}."
@@ -111,7 +111,7 @@ def _sum(report: "CheckReport") -> str:
 
 def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
     for equation in equations:
-        console.print(Text(f"({equation.number}) {equation.name}", style="cyan"))
+        console.print(Text(_title(equation.number, equation.name), style="cyan"))
         if equation.id == "free_motion_condition":
             lines = [line for relation in equation.relations for line in condition_lines(relation.left_tree)]
             console.print("\n".join(f"    {line}" for line in lines), soft_wrap=True)
@@ -119,6 +119,10 @@ def _show_equations(console: Console, equations: Iterable["Equation"]) -> None:
             console.print("\n".join(map(_line, equation.relations)), soft_wrap=True)
         else:
             console.print("    none", style="dim")
+
+
+def _title(number: str, name: str) -> str:
+    return f"({number}) {name}" if number else name
 
 
 def _line(relation: "Relation") -> str:
@@ -233,8 +237,7 @@ def _show_misprint(console: Console, equation: "PrintedEquation") -> None:
     }
     if equation.agrees and not equation.note:
         return
-    number = f"({equation.number}) " if equation.number else ""
-    console.print(Text(f"{number}{translated(equation.name)}", style="cyan"))
+    console.print(Text(_title(equation.number, translated(equation.name)), style="cyan"))
     for what, text in texts.items():
         if text:
             console.print(f"    {what}: {text}", soft_wrap=True)
