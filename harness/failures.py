@@ -105,7 +105,7 @@ class ErrorKind(Enum):
     NOT_A_DOCUMENT = ("not a document {detail}", "create it again with this version of holonom")
     NOT_A_RECORD = ("this is not a derivation record: {detail}", "create it again with `holonom derive`")
     NOT_AN_EXPRESSION = "{detail} is not an expression that a derivation record can hold"
-    UNWRITABLE = ("the output cannot be written: {detail}", "choose a writable directory")
+    UNWRITABLE = ("the output cannot be written: {detail}", "choose another path")
     DISK_FULL = (MACHINE, "the output cannot be written: {detail}", "free some space and try again")
     COMPILER_UNUSABLE = (MACHINE, "the C compiler cannot be run: {detail}", "set CC to a working compiler")
     OUTPUT_TAKEN = ("the output would overwrite {detail}", "choose another name")
@@ -194,10 +194,8 @@ class ErrorKind(Enum):
     NO_FFMPEG = ("ffmpeg, which writes .mp4, is not installed", "install it, or use .svg, .html or .gif")
     NO_INITIAL_STATE = "no consistent initial state for these parameters: {detail}"
     NOTHING_VARIES = ("no parameter varies", "name one with {--grid}, {--list} or {--sample}")
-    NOT_AN_AXIS = (
-        "{detail}",
-        "write for example {--grid} m=50:500:1000, {--list} m=1,2,5 or {--sample} 'm=normal(100,5)' {--size} 1000",
-    )
+    NOT_AN_AXIS = "{detail}"
+    MALFORMED_AXIS = ("{detail}", "write for example {example}")
     NOT_AN_OUTPUT = ("{detail}", "keep for example final, x, at(x,2), max(abs(lambda1)), zero(y), radius, free")
     NOT_PLOTTED = "this cannot be drawn: {detail}"
     OTHER_SWEEP = ("the folder contains another sweep: {detail}", "choose another folder")

@@ -9,7 +9,7 @@ from holonom.error_messages import ARGUMENTS, translatable_error
 from holonom.failures import ErrorKind, HolonomError
 from holonom.language import speaking, translated
 
-FACTS = {"time": 1.5, "multiplier": "lambda1", "package": "numpy", "named": "holonom[motion]"}
+FACTS = {"time": 1.5, "multiplier": "lambda1", "package": "numpy", "named": "holonom[motion]", "example": "m=1,2"}
 ENGLISH_PROSE = re.compile(r"[A-Za-z]{2,} [a-z]{2,}")
 
 

@@ -120,6 +120,12 @@ def test_a_header_states_arguments_and_results():
     assert lacking == apart
 
 
+@pytest.mark.parametrize("file", sorted(LIBRARY.rglob("*.mac")), ids=lambda file: str(file.relative_to(LIBRARY)))
+def test_a_header_states_the_errors_that_the_file_raises(file):
+    header, code = file.read_text(encoding="utf-8").split("*/", 1)
+    assert ("refuse('" not in code) or re.search(r"^ +Errors *: ", header, re.MULTILINE)
+
+
 def test_the_steps_take_lists_and_matrices_and_no_structures():
     for file in sorted((LIBRARY / "derivation").glob("*.mac")):
         code = re.sub(r"/\*.*?\*/|\"[^\"]*\"", "", file.read_text(), flags=re.DOTALL)

@@ -22,7 +22,7 @@ from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command
 
 MACHINE_AT_FAULT = 3
-INVALID = re.compile(r"^Invalid value for (?:'-\w' / )?'([^']+)': ")  # of Click, before the reason
+INVALID = re.compile(r"^Invalid value for (?:'-\w' / )?'([^']+)'(?: / '[^']+')*: ")  # of Click, before the reason
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
@@ -172,7 +172,8 @@ def run() -> int:
             sys.stdout.flush()
         return status
     except click.ClickException as error:
-        message = INVALID.sub(r"\1: ", error.format_message())
+        message = INVALID.sub(r"\1: ", error.format_message()).replace("integer range", "integer")
+        message = re.sub(r"(?<![.?]) Did you mean", ". Did you mean", message)
         return _report(message if message.endswith(("?", ".")) else f"{message}.", error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED

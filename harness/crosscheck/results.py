@@ -17,7 +17,6 @@ from mpmath import mp
 from ..description import Description
 from ..failures import ErrorKind, HolonomError
 from ..formats import Publication, require
-from ..language import translatable
 from ..number_texts import number, numbers
 from ..program.differentiation import derivative_name
 from .compared_values import differing
@@ -54,8 +53,8 @@ def read_result(file: Path) -> Content:
         content = json.loads(file.read_text("utf-8"))
         kind = next(each for each in VERIFIERS if content["format"] == f"holonom-{each}")
     except (ValueError, KeyError, TypeError, RecursionError, StopIteration):
-        detail = translatable("%(file)s: expected the JSON of %(names)s", file=file, names=", ".join(VERIFIERS))
-        raise HolonomError(ErrorKind.NOT_A_DOCUMENT, detail=detail) from None
+        names = ", ".join(f"holonom-{each}" for each in VERIFIERS)
+        raise HolonomError(ErrorKind.NOT_A_DOCUMENT, file, names) from None
     require(kind, content)
     return content
 

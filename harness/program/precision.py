@@ -79,10 +79,11 @@ def read_precision(text: str) -> Precision:
         raise HolonomError(
             ErrorKind.NOT_A_PRECISION,
             detail=translatable(
-                "%(text)s: expected double, extended, quadruple, or from 1 to %(most)s digits",
+                "expected double, extended, quadruple, or from 1 to %(most)s digits, not %(text)s",
                 text=text,
                 most=MOST_DIGITS,
             ),
+            option="--precision",
         )
     return _of_digits(int(text))
 

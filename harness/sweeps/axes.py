@@ -6,11 +6,12 @@ turn. Row i is a function of i and the seed alone: random numbers come in blocks
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from itertools import chain
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,8 @@ from ..options import Number, within_reach
 BLOCK = 1024  # members of a sample that one generator draws
 MOST_ROWS = 10**12
 NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?:/\d+)?"
+EXAMPLES = {"--grid": "m=50:500:1000", "--list": "m=1,2,5", "--sample": "'m=normal(100,5)'"}
+Axis = TypeVar("Axis")
 DRAWN = re.compile(rf"(\w+)\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
 
 
@@ -195,8 +198,18 @@ def read_axes(
     HolonomError
         One of them is not of its form, or as `make_axes`.
     """
-    values = [*map(_read_grid, grids), *map(_read_list, lists)]
-    return make_axes(values, [sample(*_named(text), text) for text in samples], size, seed)
+    values = [*_read("--grid", _read_grid, grids), *_read("--list", _read_list, lists)]
+    return make_axes(values, [*_read("--sample", _read_sample, samples)], size, seed)
+
+
+def _read(option: str, read: Callable[[str], Axis], texts: Iterable[str]) -> Iterator[Axis]:
+    """Yield the axes of an option. The error for a malformed one shows an example."""
+    for text in texts:
+        try:
+            yield read(text)
+        except HolonomError as error:
+            example = EXAMPLES[option]
+            raise HolonomError(ErrorKind.MALFORMED_AXIS, detail=error.detail, option=option, example=example) from None
 
 
 def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
@@ -355,6 +368,10 @@ def _read_grid(text: str) -> Grid:
 def _read_list(text: str) -> Listed:
     name, rest = _named(text)
     return listed(name, rest.split(","), text)
+
+
+def _read_sample(text: str) -> Sample:
+    return sample(*_named(text), text)
 
 
 def _named(text: str) -> tuple[str, str]:

@@ -39,7 +39,6 @@ def test_samples_have_the_moments_of_their_distributions():
         (["m=1:2:0"], [], [], None),
         (["m=1:x:3"], [], [], None),
         (["=1:2:3"], [], [], None),
-        (["m=1:2:3"], ["m=1,2"], [], None),
         (["m=1:1/0:3"], [], [], None),
         (["m=0:1e999:3"], [], [], None),
         ([], ["m="], [], None),
@@ -47,12 +46,24 @@ def test_samples_have_the_moments_of_their_distributions():
         ([], [], ["m=normal(0,0)"], 10),
         ([], [], ["m=uniform(2,1)"], 10),
         ([], [], ["m=loguniform(0,1)"], 10),
+    ],
+)
+def test_a_malformed_axis_raises_with_its_option(grids, lists, samples, size):
+    with failing(ErrorKind.MALFORMED_AXIS) as raised:
+        read_axes(grids, lists, samples, size, None)
+    assert raised.value.option == ("--grid" if grids else "--list" if lists else "--sample")
+
+
+@pytest.mark.parametrize(
+    ("grids", "lists", "samples", "size"),
+    [
+        (["m=1:2:3"], ["m=1,2"], [], None),
         ([], [], ["m=normal(0,1)"], None),
         (["m=1:2:3"], [], [], 10),
         (["m=0:1:999999999", "c=0:1:999999999"], [], [], None),
     ],
 )
-def test_invalid_axes_raise(grids, lists, samples, size):
+def test_axes_that_do_not_go_together_raise(grids, lists, samples, size):
     with failing(ErrorKind.NOT_AN_AXIS):
         read_axes(grids, lists, samples, size, None)
 

@@ -167,7 +167,7 @@ def test_another_sweep_in_the_same_folder_is_refused(swept, change, part):
     ("options", "told"),
     [
         (("--keep", "final"), message_of(ErrorKind.NOTHING_VARIES)),
-        (("--grid", "m=1:2"), message_of(ErrorKind.NOT_AN_AXIS)),
+        (("--grid", "m=1:2"), message_of(ErrorKind.MALFORMED_AXIS)),
         (("--grid", "m=1:2:3", "--keep", "x.y"), message_of(ErrorKind.NOT_AN_OUTPUT, "x.y")),
         (("--grid", "m=1:2:3", "--tol", "7"), message_of(ErrorKind.TOLERANCE_OUT_OF_RANGE)),
         (

@@ -124,7 +124,7 @@ class RobustEngine:
                 finest=f"{TIGHTEST:.1e}",
                 tol=f"{tol:g}",
             )
-            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
         return cls(task.problem, tol, task.matrices, task.request.max_step)
 
     @property

@@ -100,7 +100,7 @@ class RungeKuttaEngine(ProgramEngine):
                 finest=f"{FINEST:g}",
                 tol=f"{tol:g}",
             )
-            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds)
+            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
         stabilization = stabilization if problem.multipliers else Stabilization.NONE

@@ -391,6 +391,7 @@ def checked_tolerance(tol: float, precision: Precision) -> float:
     if not float(finest) <= tol < 1:
         raise HolonomError(
             ErrorKind.TOLERANCE_OUT_OF_RANGE,
+            option="--tol",
             detail=translatable(
                 "%(precision)s precision holds tolerances from %(finest)s to 1, not %(tol)s",
                 precision=precision.name,
