@@ -49,7 +49,7 @@ class ProgramProjection:
 
 
 def nearest_state(corrections: Evaluation, inputs: Numbers, size: int) -> Numbers:
-    """Return the nearest state of one motion or of k motions that satisfies the constraints.
+    """Return the nearest states of motions that satisfy the constraints.
 
     Parameters
     ----------
