@@ -153,7 +153,7 @@ class MotionProblem:
     nominal: Mapping[str, float] = field(default_factory=dict)
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
     joint_shapes: Mapping[str, Sequence[int]] = field(default_factory=dict)  # as `Description.joint_shapes`
-    _compiled: dict[Hashable, tuple[object, Any]] = field(default_factory=dict, compare=False, repr=False)
+    _compiled: dict[Hashable, list[tuple[object, Any]]] = field(default_factory=dict, compare=False, repr=False)
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
         """Return the result of `build` for a part, cached for all values of open inputs.
@@ -176,10 +176,12 @@ class MotionProblem:
         """
         if not self.open_inputs:
             return build()
-        key = (what, id(part))
-        if key not in self._compiled:
-            self._compiled[key] = part, build()  # with the part, so that no other one takes its id
-        return self._compiled[key][1]
+        known = self._compiled.setdefault(what, [])
+        for of, built in known:
+            if of is part:
+                return built
+        known.append((part, build()))
+        return known[-1][1]
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state for another process, without compiled functions."""

@@ -16,14 +16,13 @@ from ..program.precision import Precision
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
 from .inputs import Inputs
-from .nominal import MOVED, changes_with_state
-from .zeros import NODES, Crossing, SignedFunctions
+from .nominal import first_order_changes
+from .zeros import NODES, ZERO, Crossing, SignedFunctions
 
 if TYPE_CHECKING:
     from .hybrid_motion import HybridMotion
     from .mode import Mode
 
-ZERO = 1e-12  # of an expression at the initial time, relative to its size: it has no sign
 DRIFT = 10  # tolerances: the same later, where an expression has had no sign yet
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
@@ -148,10 +147,7 @@ class Events(SignedFunctions):
             known = [row for row, name in enumerate(self._names) if name in sides]
             self._rows = [(self._names[row], -sides[self._names[row]], sides[self._names[row]]) for row in known]
             signed = values[known] * np.array([[side] for *_, side in self._rows]).reshape(-1, 1)
-            for row, place in enumerate(known):
-                first = begun.get(self._names[place], 0)
-                signed[row, :first] = np.maximum(signed[row, :first], 0.0)
-            found = self._first_in(part, places, signed, tuple(begun))
+            found = self._first_in(part, places, signed, [begun.get(name, 0) for name, *_ in self._rows])
             self._require_values(places, values, found)
             if found is not None:
                 self._require_crossing(found, part, values)
@@ -160,11 +156,10 @@ class Events(SignedFunctions):
         return None
 
     def _sizes_in(self, step: Step) -> Numbers:
-        """Return the sizes of expressions in a step, or of their changes with the state."""
+        """Return the sizes of expressions in a step, or of their changes."""
         _, values = self._samples(step, NODES)
         start = np.array([step.start])
-        moves = [self._precision.number(repr(float(MOVED * size))) for size in step.mode.matrices.nominal.state]
-        changes = changes_with_state(lambda states: self.values(start, states), step.states(start), moves)
+        changes = first_order_changes(self.values, start, step.states(start), step.mode.matrices.nominal)
         sizes = np.max(np.abs(np.where(np.isfinite(values), values, 0.0)), axis=1)
         return np.maximum(sizes, changes[:, 0])
 

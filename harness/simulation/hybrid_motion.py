@@ -30,7 +30,6 @@ import numpy as np
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
-from ..program.motion_program import names_used
 from ..program.precision import Precision
 from ..program.sign_pattern import (
     SLIDING,
@@ -42,7 +41,6 @@ from ..program.sign_pattern import (
     uniqueness,
 )
 from .constraints.factorization import factored_constraints
-from .constraints.projection import settle
 from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
@@ -51,16 +49,14 @@ from .events import Events, values_in
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import UNIQUE, Mode
-from .nominal import nominal_of, with_nominal
+from .nominal import first_order_changes, nominal_of, with_nominal
 from .place_and_reason import place_and_reason
 from .request import SimulationRequest
 from .residuals import residuals
 from .time_events import time_events
-from .zeros import Crossing
+from .zeros import ZERO, Crossing
 
-ZERO = 1e-12  # of what a switching function or its time derivative is at nominal sizes: no sign
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
-LATER = (1 / 7, 3 / 7, 6 / 7)  # of the nominal time: times at which a function of the time is looked at
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
 NOT_UNIQUE = translatable(
     "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
@@ -127,11 +123,9 @@ class HybridMotion:
         self._to_come = deque(sorted({event.t for event in self._time_events.values()}))
         self._knots = _knots_of(problem, precision)
         self._known: dict[Hashable, MotionProblem] = problem.once("modes", problem.matrices, dict)
-        self._functions: dict[Hashable, tuple[Evaluation, list[int]]] = problem.once(
-            ("switching", precision.name), problem.matrices, dict
-        )
+        self._functions: dict[Hashable, Any] = problem.once(("switching", precision.name), problem.matrices, dict)
         self._inputs = Inputs(problem, precision)
-        self._left: tuple[str, ...] = ()
+        self._left: dict[str, Any] = {}  # signs whose switching surfaces the motion has left, with the times
         self._conditions: dict[Mode, Events] = {}
         start, *state = (precision.number(problem.start[name]) for name in ("t", *problem.state))
         pattern = self._first_pattern(start, np.array(state))
@@ -263,7 +257,6 @@ class HybridMotion:
             crossing = mode.switching_functions.first_crossing(step, self._left)
             if crossing is None:
                 yield step
-                self._left = ()
             else:
                 if crossing.t > step.start:
                     yield step._replace(end=crossing.t)
@@ -306,8 +299,7 @@ class HybridMotion:
         t, name, before = crossing.t, crossing.name, self.mode.pattern
         if name == UNIQUE:
             self._reject(t, NOT_UNIQUE)
-        again = t == self.intervals[-1].start and name in self._left
-        if again or self._crowded(t):
+        if self._left.get(name) == t or self._crowded(t):
             self._reject(t, translatable("%(sign)s changes its sign again and again", sign=self._signs[name].of))
         pattern, sign = {**before, name: crossing.to}, self._signs[name]
         if before[name] != SLIDING and sign.by not in (DependsOn.TIME, DependsOn.REACTION):
@@ -322,9 +314,10 @@ class HybridMotion:
         if self._signs[names[0]].by is not DependsOn.REACTION:
             pattern = self._with_reactions(pattern, t, state)
         before, after = self.mode, self._mode_of(pattern, self._started_at(t, state))
+        state = before.settled(t, state)  # drift is no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
         after.engine.restart(t, moved)
-        self._left = (*self._left, *left) if t == self.intervals[-1].start else left
+        self._left |= dict.fromkeys(left, t)
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
         if before.pattern[names[0]] == SLIDING:
@@ -424,10 +417,7 @@ class HybridMotion:
                     ),
                 )
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
-        if after.problem.projection is None:
-            moved = settle(after.matrices, float(t), as_floats(moved))[0]
-        else:
-            after.projection.project(t, moved)
+        moved = after.settled(t, moved)
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
         if self.problem.servo and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
@@ -469,7 +459,7 @@ class HybridMotion:
                 continue
             if self._vanishes("switch", sign, pattern, t, state):
                 pattern[sign.name] = self._leaving(sign, pattern, t, state)
-                self._left = (*self._left, sign.name)
+                self._left[sign.name] = t
             else:
                 pattern[sign.name] = 1 if self._output("switch", sign, pattern, t, state) > 0 else -1
         return self._with_reactions(pattern, t, state)
@@ -491,32 +481,26 @@ class HybridMotion:
 
     def _output(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> float:
         """Return the value of a `switching_function`, compiled at its first use."""
-        return float(self._function(name, sign, pattern)[0](self._inputs(t, state))[0])
+        return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Return True if a `switching_function` is within rounding of zero.
 
         Its rounding is relative to its changes with the state and the time.
         """
-        function, places = self._function(name, sign, pattern)
-        number = self._precision.number
-        others = [(t + number(repr(share * self.nominal.time)), state) for share in LATER]
-        for place in places:
-            moved, size = state.copy(), max(abs(float(state[place])), float(self.nominal.state[place]))
-            moved[place] += number(repr(size))
-            others.append((t, moved))
-        here, *there = (float(function(self._inputs(*at))[0]) for at in ((t, state), *others))
-        changes = np.abs(np.array(there) - here)
-        return abs(here) <= ZERO * float(np.sum(changes, where=np.isfinite(changes)))
+        function = self._function(name, sign, pattern)
 
-    def _function(self, name: str, sign: Sign, pattern: Pattern) -> tuple[Evaluation, list[int]]:
-        """Return a `switching_function`, and the state indices of its inputs."""
+        def values(times: Numbers, states: Numbers) -> Numbers:
+            return function(self._inputs(times, states))
+
+        changes = first_order_changes(values, np.array([t]), state[:, None], self.nominal)
+        return abs(self._output(name, sign, pattern, t, state)) <= ZERO * changes[0, 0]
+
+    def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
         what = name, sign.name, frozenset(pattern.items())
         if what not in self._functions:
             program = switching_function(self.problem, name, sign.name, pattern)
-            used = names_used(program)
-            places = [place for place, each in enumerate(self.problem.state) if each in used]
-            self._functions[what] = evaluation(program, self._precision), places
+            self._functions[what] = evaluation(program, self._precision)
         return self._functions[what]
 
     # ---- modes ----

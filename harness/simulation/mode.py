@@ -23,6 +23,7 @@ from ..program.sign_pattern import (
     uniqueness,
 )
 from .constraints.program_projection import ProgramProjection
+from .constraints.projection import settle
 from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_times
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
@@ -250,9 +251,29 @@ class Mode:
     def _outputs(self) -> Evaluation:
         return evaluation_once(self.problem, self.problem.outputs, self._precision)
 
+    def settled(self, t: Any, state: Numbers) -> Numbers:
+        """Return the nearest state that satisfies the constraints.
+
+        Parameters
+        ----------
+        t : number
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (2n,)
+            In the precision of the run, or in double precision if the mass matrix is singular.
+        """
+        if self.problem.projection is None:
+            return settle(self.matrices, float(t), as_floats(state))[0]
+        moved = state.copy()
+        self._projection.project(t, moved)
+        return moved
+
     @cached_property
-    def projection(self) -> ProgramProjection:
-        """The projection of states in the precision of the run."""
+    def _projection(self) -> ProgramProjection:
         return ProgramProjection(self.problem, self._precision)
 
     def integrate(self, until: Any) -> Iterator[Step]:

@@ -13,7 +13,7 @@ A size that is too large is a tolerance that is too coarse, one that is too smal
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import log
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from ..program.motion_problem import MotionProblem, computing
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.sign_pattern import program_in
-from .evaluation import Numbers
+from .evaluation import Numbers, as_floats
 from .inputs import Inputs
 
 TIMES = np.linspace(0, 1, 17)  # shares of a window at which a motion that starts at zero is looked at
@@ -32,7 +32,7 @@ SCAN = np.linspace(0, 1, 1025)  # shares of the time span at which a first push 
 FELT = 1e-3  # of the largest acceleration at these: the first push that sets a motion going from rest
 AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
-MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `changes_with_state`
+MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
 Vector = NDArray[np.float64]
@@ -151,31 +151,35 @@ def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
     return replace(problem, nominal=dict(named))
 
 
-def changes_with_state(
-    functions: Callable[[Numbers], Numbers], states: Numbers, moves: Sequence[Any] | Matrix
+def first_order_changes(
+    functions: Callable[[Numbers, Numbers], Numbers], times: Numbers, states: Numbers, nominal: Nominal
 ) -> Numbers:
-    """Return the changes of functions with the state, to first order.
+    """Return the changes of functions with the time and the state at nominal sizes, to first order.
+
+    A number that is larger than its nominal size changes by itself.
 
     Parameters
     ----------
     functions : callable
-        From states, shape (2n, k), to values, shape (functions, k).
+        From times, shape (k,), and states, shape (2n, k), to values, shape (functions, k).
+    times : ndarray, shape (k,)
+        Times of the states.
     states : ndarray, shape (2n, k)
         Coordinates, then velocities.
-    moves : sequence of 2n numbers, or ndarray, shape (2n, k)
-        `MOVED` times the nominal sizes.
+    nominal : Nominal
+        Sizes of one motion or of k motions.
 
     Returns
     -------
     ndarray, shape (functions, k)
         Sums of the sizes of changes. Those that are not finite do not count.
     """
-    here = functions(states)
+    here, points = as_floats(functions(times, states)), np.concatenate([times[None], states])
     changes = np.zeros(here.shape)
-    for place, move in enumerate(moves):
-        moved = states.copy()
-        moved[place] += move
-        change = np.abs(functions(moved) - here) / MOVED
+    for place, size in enumerate((nominal.time, *nominal.state)):
+        moved = points.copy()
+        moved[place] += MOVED * np.maximum(size, np.abs(as_floats(points[place])))
+        change = np.abs(as_floats(functions(moved[0], moved[1:])) - here) / MOVED
         changes += np.where(np.isfinite(change), change, 0.0)
     return changes
 

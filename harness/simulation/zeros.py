@@ -8,7 +8,7 @@ minimum between them. The time is found by taking sections, to the last bit of i
 """
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
 from math import ceil
@@ -21,16 +21,20 @@ from ..program.precision import Precision
 from .engines.engine import Step
 from .evaluation import Numbers
 from .matrices import Vector
+from .nominal import first_order_changes
 
 DEGREE, FINE = 32, 256
 NODES = np.concatenate([[0.0], np.sort(1 + chebyshev.chebpts1(DEGREE + 1)) / 2, [1.0]])
+ENDS = np.append(NODES, 1.0)  # after the last sample there is none
 PLACES = np.linspace(0.0, 1.0, FINE + 1)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE))
 BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
 CORRECTIONS = 4  # of a minimum, by Newton's method
 PARTS, SHORTEST = 128, 1 / 1024  # of the time span: parts that are looked at, at least; parts that are not halved
 SECTIONS = 32  # of an interval with a zero, of which the one that has it is taken
+ROUNDED_TIME = 4 * np.finfo(float).eps  # of a time: how far rounding moves it
 SURE = 2  # digits that a function loses relative to its largest value: one that touches zero may be that much below
+ZERO = 1e-12  # of the change of a function at nominal sizes: it has no sign
 LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of the largest where it is near
 
 
@@ -67,15 +71,16 @@ class SignedFunctions(ABC):
         ndarray of float, shape (functions, k)
         """
 
-    def first_crossing(self, step: Step, left: Sequence[str]) -> Crossing | None:
+    def first_crossing(self, step: Step, left: dict[str, Any]) -> Crossing | None:
         """Return the time within a step at which the motion first leaves its pattern.
 
         Parameters
         ----------
         step : Step
             A step of the mode.
-        left : sequence of str
-            Signs whose switching surfaces the motion has just left. Rounding decides their values.
+        left : dict of str to number
+            Signs whose switching surfaces the motion has left, with the times. Each stays here until its function is
+            beyond rounding, which may take several steps if these are short.
 
         Returns
         -------
@@ -83,11 +88,31 @@ class SignedFunctions(ABC):
         """
         if not self._rows:
             return None
+        rounding = self._least_after_zero(step) if left else None
         for part, places, values in self._looked_at(step):
-            found = self._first_in(part, places, values, left if part.start == step.start else ())
+            begun = self._begun(values, rounding, left) if left else [0] * len(values)
+            found = self._first_in(part, places, values, begun)
             if found is not None:
                 return found
+            for (name, *_), first in zip(self._rows, begun, strict=True):
+                if first < values.shape[1]:
+                    left.pop(name, None)
         return None
+
+    def _least_after_zero(self, step: Step) -> Numbers:
+        """Return the sizes below which functions have no sign after a zero, shape (functions, 1)."""
+        nominal, start = step.mode.matrices.nominal, np.array([step.start])
+        changes = first_order_changes(self.values, start, step.states(start), nominal)
+        return changes * max(ZERO, ROUNDED_TIME * abs(float(step.start)) / nominal.time)
+
+    def _begun(self, values: Numbers, rounding: Numbers, left: Collection[str]) -> list[int]:
+        """Return the samples from which on functions that the motion has left have a sign."""
+        clear = np.abs(values) > rounding
+        clear[:, 0] = False
+        return [
+            (int(np.argmax(row)) if row.any() else len(row)) if name in left else 0
+            for (name, *_), row in zip(self._rows, clear, strict=True)
+        ]
 
     def _looked_at(self, step: Step) -> Iterator[tuple[Step, Numbers, Numbers]]:
         """Yield the parts of a step in order, each with its samples."""
@@ -95,7 +120,8 @@ class SignedFunctions(ABC):
         while waiting:
             part = waiting.pop()
             places, values = self._samples(part, NODES)
-            if float(part.end - part.start) > SHORTEST * self._span and not _is_resolved(values):
+            shortest = max(SHORTEST * self._span, ROUNDED_TIME * abs(float(part.start)))
+            if float(part.end - part.start) > shortest and not _is_resolved(values):
                 waiting += reversed(self._cut(part, 2))
             else:
                 yield part, places, values
@@ -108,22 +134,22 @@ class SignedFunctions(ABC):
         edges = [*(step.start + (step.end - step.start) * numbers), step.end]
         return [step._replace(start=start, end=end) for start, end in pairwise(edges)]
 
-    def _first_in(self, step: Step, places: Numbers, values: Numbers, left: Sequence[str]) -> Crossing | None:
-        for row, (name, *_) in enumerate(self._rows):
-            if name in left:
-                values[row, 0] = max(values[row, 0], 0.0)
-            self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(values[row])))
-        found = [self._in_row(step, row, places, values[row]) for row in range(len(self._rows))]
+    def _first_in(self, step: Step, places: Numbers, values: Numbers, begun: Sequence[int]) -> Crossing | None:
+        """Return the first crossing among samples, of which those before each function's first one have no sign."""
+        for (name, *_), row in zip(self._rows, values, strict=True):
+            self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(row)))
+        found = [self._in_row(step, row, places, values[row], first) for row, first in enumerate(begun)]
         return min((crossing for crossing in found if crossing), key=lambda crossing: crossing.t, default=None)
 
-    def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers) -> Crossing | None:
+    def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers, first: int) -> Crossing | None:
         name, to, _ = self._rows[row]
+        values[:first] = np.maximum(values[:first], 0.0)
         negative = np.flatnonzero(values < 0)
         last = negative[0] if negative.size else len(values)
         if last == 0:
             return Crossing(step.start, name, to)
         before, after = (places[last - 1], places[last]) if negative.size else (None, None)
-        dip = self._dip(step, row, values, NODES[last] if negative.size else 1.0)
+        dip = self._dip(step, row, values, *ENDS[[first, last]])
         if dip is not None:
             before, after = dip
         if after is None:
@@ -134,7 +160,7 @@ class SignedFunctions(ABC):
 
         return Crossing(self._last_inside(inside, before, after), name, to)
 
-    def _dip(self, step: Step, row: int, values: Numbers, end: float) -> tuple[Any, Any] | None:
+    def _dip(self, step: Step, row: int, values: Numbers, begin: float, end: float) -> tuple[Any, Any] | None:
         """Return times between two samples of which the second has a negative value.
 
         The function becomes positive again before the later sample.
@@ -144,8 +170,10 @@ class SignedFunctions(ABC):
             return None
         coefficients = TO_COEFFICIENTS @ inner
         between = BETWEEN @ coefficients
-        places = np.flatnonzero((between < 0) & (PLACES > 0) & (end > PLACES))
-        around = PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, end)
+        places = np.flatnonzero((between < 0) & (begin < PLACES) & (end > PLACES))
+        around = (
+            PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, begin, end)
+        )
         if around is None:
             return None
         times, found = self._samples(step, around)
@@ -188,13 +216,13 @@ def _is_resolved(values: Numbers) -> bool:
     return bool((sizes[:, -LAST:].max(axis=1) <= RESOLVED * sizes.max(axis=1)).all())
 
 
-def _narrow_dip(coefficients: Vector, between: Vector, end: float) -> Vector | None:
+def _narrow_dip(coefficients: Vector, between: Vector, begin: float, end: float) -> Vector | None:
     """Return a place and a later one at which a polynomial is negative.
 
     It is the first minimum below zero. No sample of the polynomial is negative.
     """
     for low, place in minima(coefficients, between, above_zero=True):
-        if chebyshev.chebval(place, coefficients) < 0 and (1 + place) / 2 < end:
+        if chebyshev.chebval(place, coefficients) < 0 and begin < (1 + place) / 2 < end:
             return (1 + np.array([low, place])) / 2
     return None
 

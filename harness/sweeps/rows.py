@@ -24,14 +24,12 @@ from ..program.precision import read_precision
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors
-from ..simulation.events import ZERO
 from ..simulation.initial_state import initial_states_of, started
 from ..simulation.matrices import BatchMatrices
 from ..simulation.nominal import (
     COARSE,
-    MOVED,
     Nominal,
-    changes_with_state,
+    first_order_changes,
     nominal_at_each,
     nominal_of,
     with_nominal,
@@ -39,6 +37,7 @@ from ..simulation.nominal import (
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
+from ..simulation.zeros import ZERO
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size
@@ -244,10 +243,11 @@ class RowMaker:
 
         The last numbers, one for each quantity, are its largest sizes. Before them come its zeros.
         """
-        start = np.full((1, states.shape[1]), self._start)
-        changes = changes_with_state(
-            lambda moved: quantities_at(np.concatenate([start, moved, values])), states, MOVED * nominal.state
-        )
+
+        def at(times: Floats, states: Floats) -> Floats:
+            return quantities_at(np.concatenate([times[None], states, values]))
+
+        changes = first_order_changes(at, np.full(states.shape[1], self._start), states, nominal)
         count = len(changes)
         seen, largest = seen[: len(seen) - count].copy(), seen[len(seen) - count :]
         seen[len(seen) - count :][largest <= ZERO * changes] = np.nan

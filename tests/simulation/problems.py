@@ -11,5 +11,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 @cache
-def problem(file: str, scene: str | None = None, digits: int = 17, **settings: str) -> MotionProblem:
-    return motion_problem(EXAMPLES / file, Request(scene, settings=settings), Limits(), digits)
+def problem(
+    file: str, scene: str | None = None, digits: int = 17, open_parameters: tuple[str, ...] = (), **settings: str
+) -> MotionProblem:
+    return motion_problem(EXAMPLES / file, Request(scene, settings=settings), Limits(), digits, open_parameters)

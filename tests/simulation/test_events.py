@@ -1,6 +1,7 @@
 """Motions that end at an event, against the times that closed forms give."""
 
 import io
+import math
 
 import mpmath
 import pytest
@@ -110,6 +111,24 @@ def test_a_switched_motion_ends_in_a_later_part():
     report = scene.simulate(samples=2).report
     assert (report.t, report.coordinates["x"]) == pytest.approx((2, 1), rel=1e-14)
     assert [switching.t for switching in report.switchings] == [1]
+
+
+ONE_SIDED = """
+system : holonomic_system(coordinates = [x], parameters = [a, b], kinetic_energy = dot(x)^2/2,
+  forces = [if x > 0 then -b*x else -a*x])$
+stretched : holonomic_scene(system, parameter_values = [a = {a}, b = {b}], initial_state = [x = {x}, dot(x) = 0],
+  time_span = [0, {end}], until = [x])$
+"""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("length", "time"), [(1e-6, 1e-3), (1e6, 1e4)])
+def test_a_step_as_short_as_rounding_changed_a_sign_again(length, time, engine, c_compiler):
+    """The motion ends where the force switches, to the last bit but one. Truth: x = -cos(2 t) until then."""
+    scene = ONE_SIDED.format(a=4 / time**2, b=9 / time**2, x=-length, end=10 * time)
+    report = holonom.system(scene).simulate(samples=5, engine=engine, max_step=time / 100).report
+    assert float(report.t) / time == pytest.approx(math.pi / 4, rel=10 * ENGINES[engine])
+    assert report.trusted
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,13 @@ Four systems are written in units by Maxima, so that their start, free motion, s
 example is measured in them after Maxima.
 """
 
+import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,14 +18,20 @@ from problems import problem
 from units import SI, SYSTEMS, Units, in_units
 
 import holonom
-from holonom.failures import HolonomError
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
+from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.series.heyoka_series import expand
+from holonom.series.power_series import MotionSeries
 from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
+from holonom.sweeps.axes import read_axes
+from holonom.sweeps.outputs import read_quantities
+from holonom.sweeps.rows import Plan, RowMaker
 
 AGREEMENT = 1e-10  # of the largest number of its kind
 ENGINES = [EngineName.AUTO, EngineName.TAYLOR, EngineName.ROBUST, EngineName.RUNGE_KUTTA]
@@ -56,35 +64,12 @@ kick : holonomic_scene(system, parameter_values = [m = m_, k = 4*m_/t_^2, F = 10
   initial_state = [x = 0, dot(x) = 0], time_span = [0, 8*t_])$
 """,
 }
+FOLDER = Path(__file__).parents[2] / "examples"
+SCENE = re.compile(r"^(\w+) *: *holonomic_scene", re.MULTILINE)
 EXAMPLES = [
-    ("andrews.mac", None),
-    ("arm.mac", "circle_scene"),
-    ("arm.mac", "shoulder_scene"),
-    ("bead.mac", "driven_scene"),
-    ("bead.mac", "resting_scene"),
-    ("car_axis.mac", None),
-    ("chain.mac", None),
-    ("crane.mac", None),
-    ("heavy_top.mac", None),
-    ("hoist.mac", "recorded_scene"),
-    ("hoist.mac", "pulled_scene"),
-    ("linkage.mac", None),
-    ("overhead_crane.mac", None),
-    ("pendulum.mac", "lengthening_scene"),
-    ("pendulum.mac", "swing_scene"),
-    ("prescribed_tension.mac", "thrown_scene"),
-    ("prescribed_tension.mac", "steady_scene"),
-    ("prescribed_tension.mac", "growing_scene"),
-    ("ring.mac", None),
-    ("satellite.mac", None),
-    ("spherical_pendulum.mac", "swinging_scene"),
-    ("spherical_pendulum.mac", "shaken_scene"),
-    ("weightless_cabin.mac", "lift_scene"),
-    ("weightless_cabin.mac", "parabolic_flight_scene"),
-    ("whirling_bob.mac", None),
-    ("paper/paper.mac", "initial_motion_scene"),
-    *((f"hard/{name}.mac", None) for name in ("bricard_linkage", "heavy_bob", "repeated_constraint", "sarrus_linkage")),
-    *((f"hard/{name}.mac", None) for name in ("stiff_spring", "swing", "vanishing_length")),
+    (path.relative_to(FOLDER).as_posix(), scene)
+    for path in sorted(FOLDER.rglob("*.mac"))
+    for scene in SCENE.findall(path.read_text(encoding="utf-8"))
 ]
 # The multipliers of the linkage are large next to dead centres. The stiff spring is stretched by 1e-3 beside
 # coordinates of one, for 2,250 periods: in the same units, the last bit of x3 at the start changes the multipliers by
@@ -174,20 +159,15 @@ def test_four_systems_are_the_same_in_all_units(name, units, engine):
 
 
 @cache
-def example_in_si(file: str, scene: str | None, engine: EngineName) -> Seen:
+def example_in_si(file: str, scene: str, engine: EngineName) -> Seen:
     return seen(problem(file, scene), engine, SI)
 
 
-ENGINES_IN_TURN = [  # each example meets each engine in some units; all by all would take an hour
-    (*example, units, ENGINES[(i + k) % len(ENGINES)])
-    for i, example in enumerate(EXAMPLES)
-    for k, units in enumerate(SYSTEMS)
-]
-
-
 @pytest.mark.long
-@pytest.mark.parametrize(("file", "scene", "units", "engine"), ENGINES_IN_TURN)
-def test_every_example_is_the_same_in_all_units(file, scene, units, engine):
+@pytest.mark.parametrize("units", SYSTEMS)
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(("file", "scene"), EXAMPLES)
+def test_every_example_is_the_same_in_all_units(file, scene, engine, units):
     others = SYSTEMS[units]
     known, found = example_in_si(file, scene, engine), seen(in_units(problem(file, scene), others), engine, others)
     assert_same(known, found, (10 if file in DIGIT_LOST else 1) * AGREEMENT)
@@ -235,33 +215,90 @@ def test_free_motion_is_the_same_in_all_units(name, units):
     assert other.trajectory.kind == one.trajectory.kind
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("units", SYSTEMS)
-@pytest.mark.parametrize("name", ["pendulum", "double pendulum"])
-def test_series_are_the_same_in_all_units(name, units):
-    others = SYSTEMS[units]
-    one, other = (holonom.system(written(name, each)).series(order=12, digits=30) for each in (SI, others))
-    for coordinate, coefficients in one.coordinates.items():
-        for power, (number, found) in enumerate(zip(coefficients, other.coordinates[coordinate], strict=True)):
-            in_si = Fraction(found) * others.time**power / others.length
-            assert abs(in_si - Fraction(number)) <= Fraction(1, 10**25) * max(1, abs(Fraction(number)))
+@cache
+def expanded(file: str, scene: str, units: str | None) -> MotionSeries | ErrorKind:
+    motion = problem(file, scene)
+    try:
+        return expand(motion if units is None else in_units(motion, SYSTEMS[units]), 12, read_precision("50"))
+    except HolonomError as error:
+        return error.kind
+
+
+def assert_same_series(file: str, scene: str, units: str) -> None:
+    one, other = expanded(file, scene, None), expanded(file, scene, units)
+    if isinstance(one, ErrorKind):
+        assert other is one
+        return
+    unit_of = dict.fromkeys(one.coordinates, SYSTEMS[units].length)
+    unit_of |= dict.fromkeys(one.multipliers, SYSTEMS[units].energy)
+    ours, theirs = one.coordinates | one.multipliers, other.coordinates | other.multipliers
+    assert theirs.keys() == ours.keys()
+    for name, unit in unit_of.items():
+        for power, (number, found) in enumerate(zip(ours[name], theirs[name], strict=True)):
+            in_si = Fraction(found) * SYSTEMS[units].time ** power / unit
+            largest = max(abs(Fraction(row[power])) for row in ours.values())
+            assert abs(in_si - Fraction(number)) <= Fraction(1, 10**40) * largest, (name, power)
+
+
+def test_a_series_is_the_same_in_units_of_atoms():
+    assert_same_series("spherical_pendulum.mac", "shaken_scene", "atoms")
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("units", SYSTEMS)
-def test_a_sweep_is_the_same_in_all_units(units):
-    one, other = (swept(each) for each in (SI, SYSTEMS[units]))
-    assert other["status"].tolist() == one["status"].tolist()
-    for name in ("x", "y"):
-        change = other[name].to_numpy() / float(SYSTEMS[units].length) - one[name].to_numpy()
-        assert np.max(np.abs(change)) <= AGREEMENT
+@pytest.mark.parametrize(("file", "scene"), EXAMPLES)
+def test_every_series_is_the_same_in_all_units(file, scene, units):
+    assert_same_series(file, scene, units)
+
+
+PARAMETER = re.compile(r"[^_]parameters *= *\[(\w+)")
 
 
 @cache
-def swept(units: Units):
-    weights = [units.length * n / units.time**2 for n in (5, 10, 20)]
-    scene = holonom.system(written("pendulum", units))
-    return holonom.sweep(scene, values={"g": weights}, keep=["final"]).to_pandas()
+def swept(file: str, scene: str, units: str | None) -> Any:
+    """Three rows around the first parameter, or the reason against a sweep."""
+    (name,) = PARAMETER.findall((FOLDER / file).read_text(encoding="utf-8"))[:1]
+    try:
+        motion = problem(file, scene, open_parameters=(name,))
+        value = float(motion.values[name])
+        axes = read_axes([f"{name}={0.95 * value!r}:{1.05 * value!r}:3"], [], [], None, None)
+        quantities = read_quantities([f"final,{zero_of(motion)},max(energy)"])
+        plan = Plan(motion if units is None else in_units(motion, SYSTEMS[units]), axes, quantities)
+        return RowMaker(plan).table(0, axes.rows).to_pandas()
+    except HolonomError as error:
+        return error.kind
+
+
+def zero_of(motion: MotionProblem) -> str:
+    return f"zero({motion.coordinates[0]})"
+
+
+def assert_same_sweep(file: str, scene: str, units: str) -> None:
+    one, other = swept(file, scene, None), swept(file, scene, units)
+    if isinstance(one, ErrorKind):
+        assert other is one
+        return
+    own, n = SYSTEMS[units], len(problem(file, scene).coordinates)
+    assert other["status"].tolist() == one["status"].tolist()
+    state = problem(file, scene).state
+    zero = zero_of(problem(file, scene))
+    kinds = [(state[:n], own.length), (state[n:], own.length / own.time), ([zero], own.time)]
+    for names, unit in [*kinds, (["max(energy)"], own.energy)]:
+        known, found = one[list(names)].to_numpy(float), other[list(names)].to_numpy(float) / float(unit)
+        assert np.isnan(found).tolist() == np.isnan(known).tolist()
+        size = np.nanmax(np.abs(known), initial=0.0) or 1.0
+        assert np.nanmax(np.abs(found - known), initial=0.0) <= AGREEMENT * size, names
+
+
+def test_a_sweep_is_the_same_in_units_of_atoms():
+    assert_same_sweep("pendulum.mac", "swing_scene", "atoms")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("units", SYSTEMS)
+@pytest.mark.parametrize(("file", "scene"), [each for each in EXAMPLES if each[0] != "paper/paper.mac"])  # no parameter
+def test_every_sweep_is_the_same_in_all_units(file, scene, units):
+    assert_same_sweep(file, scene, units)
 
 
 FROM_REST = """load("holonom.mac")$

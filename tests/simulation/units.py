@@ -6,6 +6,7 @@ variables, so that no dimensions have to be known. Constraints and controls keep
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 
 from holonom.program.motion_problem import MotionProblem
@@ -46,7 +47,9 @@ def in_units(problem: MotionProblem, units: Units) -> MotionProblem:
         return program and _changed(program, of_inputs, lambda output: _of_output(output, problem, units))
 
     def text(number: str, unit: Fraction) -> str:
-        return str(float(Fraction(number) * unit))
+        """Exactly: units are powers of ten."""
+        exact = Fraction(number) * unit
+        return format(Decimal(exact.numerator) / Decimal(exact.denominator), "e")
 
     span, start = problem.time_span, problem.parametric_start
     tables = tuple(

@@ -21,7 +21,7 @@ from ...program.motion_problem import MotionProblem, computing
 from ...program.precision import GUARD_DIGITS, Precision, read_precision
 from ...program.sign_pattern import at_start
 from ..constraints.program_projection import ProgramProjection
-from ..constraints.stabilization import Equations, equations_of_motion, stabilized_equations
+from ..constraints.stabilization import equations_of_motion, stabilized_equations
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
@@ -91,7 +91,8 @@ class TaylorEngine(ProgramEngine):
         self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
-        self._stabilization, self._decay = stabilization, decay
+        stabilized = stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and problem.multipliers
+        self._stabilization, self._decay = stabilization, decay_in(problem, decay) if stabilized else None
         begun, number = time.perf_counter(), self.precision.number
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
@@ -295,7 +296,8 @@ class TaylorEngine(ProgramEngine):
 
     def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
-        kind = ("taylor", code, self._stabilization, self.precision.name, float(self._unit), *self._tolerance.values())
+        stabilized = self._stabilization, self._decay
+        kind = ("taylor", code, *stabilized, self.precision.name, float(self._unit), *self._tolerance.values())
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
         built = copy(built) if self._problem.open_inputs else built
         self._integrator = built if self._unit == 1 else ScaledTime(built, self._unit)
@@ -305,18 +307,16 @@ class TaylorEngine(ProgramEngine):
         self.state = self._integrator.state  # a view: what the integrator does shows in it
 
     def _compiled(self, code: Code, state: Numbers) -> Any:
-        equations = self._equations_with(self._stabilization, self._decay)
+        asked = self._problem, self._program, self.precision
+        if self._decay is None:
+            equations = equations_of_motion(*asked)
+        else:
+            equations = stabilized_equations(*asked, self._stabilization, self._decay)
         if self._unit != 1:
             equations = in_unit(equations, self._unit)
         return import_heyoka().taylor_adaptive(
             equations, state, **self._tolerance, **code.options, **self.precision.options
         )
-
-    def _equations_with(self, stabilization: Stabilization, decay: float | None) -> Equations:
-        if stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and self._problem.multipliers:
-            gamma = decay_in(self._problem, decay)
-            return stabilized_equations(self._problem, self._program, self.precision, stabilization, gamma)
-        return equations_of_motion(self._problem, self._program, self.precision)
 
 
 def states_of(begun: Any, rest: Any, unit: Any, coefficients: Numbers, times: Numbers) -> Numbers:

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 from problems import problem
 
+from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
+from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
 from holonom.simulation.engines.code import Code, better_code, is_worthwhile, running
@@ -45,11 +48,18 @@ def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
     assert (found.coordinates, found.steps) == (truth.coordinates, truth.steps)
 
 
-def test_a_run_with_many_stops_uses_the_code_that_is_quickly_compiled(monkeypatch):
-    """Each stop began a clock of its own."""
+def test_a_run_with_many_stops_uses_the_code_that_is_quickly_compiled(monkeypatch, write_scene):
+    """Each point of a table is a stop, and began a count of its own."""
     monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
-    wanted = SimulationRequest(until=Fraction(200), samples=0, max_step=0.25)
-    assert simulate(problem("pendulum.mac", "swing_scene"), wanted).report.code == Code.COMPACT
+    points = ", ".join(f"[{t}, 1]" for t in range(201))
+    scene = f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = [gravity = 981/100*y], constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = table([{points}])], initial_state = [x = 3/5, dot(x) = 0],
+  initial_guess = [y = -4/5], time_span = [0, 200])$
+"""
+    motion = motion_problem(write_scene(scene), Request(), Limits())
+    assert simulate(motion, SimulationRequest(samples=0)).report.code is not Code.QUICK
 
 
 @pytest.mark.parametrize("compact", [None, True, False])
