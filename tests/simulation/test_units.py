@@ -4,21 +4,26 @@ Four systems are written in units by Maxima, so that their start, free motion, s
 example is measured in them after Maxima.
 """
 
+import json
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
+from subprocess import CompletedProcess
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 import pytest
 from problems import problem
-from units import SI, SYSTEMS, Units, in_units
+from units import SI, SYSTEMS, Units, description_in_length, in_units
 
 import holonom
+from holonom.documents import ask
 from holonom.failures import ErrorKind, HolonomError
+from holonom.formats import Document
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
@@ -173,6 +178,28 @@ def test_every_example_is_the_same_in_all_units(file, scene, engine, units):
     assert_same(known, found, (10 if file in DIGIT_LOST else 1) * AGREEMENT)
 
 
+def assert_ends_well(file: str, scene: str, run: Callable[..., CompletedProcess[str]], folder: Path) -> None:
+    description = description_in_length(described(file), SYSTEMS["micrometres"].length)
+    (folder / "description.json").write_text(json.dumps(description), encoding="utf-8")
+    found = run("simulate", folder / "description.json", "--scene", scene)
+    assert found.returncode == (2 if file == "hard/vanishing_length.mac" else 0), found.stderr
+
+
+@cache
+def described(file: str) -> dict[str, Any]:
+    return json.loads(ask(Document.DESCRIPTION, FOLDER / file))
+
+
+def test_a_pendulum_of_micrometres_ends_with_status_0(holonom_here, tmp_path):
+    assert_ends_well("pendulum.mac", "swing_scene", holonom_here, tmp_path)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("file", "scene"), EXAMPLES)
+def test_every_example_of_micrometres_ends_with_status_0(file, scene, holonom_here, tmp_path):
+    assert_ends_well(file, scene, holonom_here, tmp_path)
+
+
 @pytest.mark.parametrize("samples", [11, None])
 def test_taylor_coefficients_of_a_fast_motion_left_the_range_of_doubles(samples):
     """Its periods are 3e-15 of a unit of time; at order 30 the engine ended. None takes the states of each step."""
@@ -262,15 +289,16 @@ def swept(file: str, scene: str, units: str | None) -> Any:
         motion = problem(file, scene, open_parameters=(name,))
         value = float(motion.values[name])
         axes = read_axes([f"{name}={0.95 * value!r}:{1.05 * value!r}:3"], [], [], None, None)
-        quantities = read_quantities([f"final,{zero_of(motion)},max(energy)"])
+        quantities = read_quantities([",".join(["final", *quantities_of(motion)])])
         plan = Plan(motion if units is None else in_units(motion, SYSTEMS[units]), axes, quantities)
         return RowMaker(plan).table(0, axes.rows).to_pandas()
     except HolonomError as error:
         return error.kind
 
 
-def zero_of(motion: MotionProblem) -> str:
-    return f"zero({motion.coordinates[0]})"
+def quantities_of(motion: MotionProblem) -> tuple[str, str]:
+    first = motion.coordinates[0]
+    return f"zero({first})", f"max({first})"
 
 
 def assert_same_sweep(file: str, scene: str, units: str) -> None:
@@ -278,12 +306,12 @@ def assert_same_sweep(file: str, scene: str, units: str) -> None:
     if isinstance(one, ErrorKind):
         assert other is one
         return
-    own, n = SYSTEMS[units], len(problem(file, scene).coordinates)
+    motion, own = problem(file, scene), SYSTEMS[units]
     assert other["status"].tolist() == one["status"].tolist()
-    state = problem(file, scene).state
-    zero = zero_of(problem(file, scene))
-    kinds = [(state[:n], own.length), (state[n:], own.length / own.time), ([zero], own.time)]
-    for names, unit in [*kinds, (["max(energy)"], own.energy)]:
+    zero, most = quantities_of(motion)
+    velocities = motion.state[len(motion.coordinates) :]
+    kinds = ((*motion.coordinates, most), own.length), (velocities, own.length / own.time), ((zero,), own.time)
+    for names, unit in kinds:
         known, found = one[list(names)].to_numpy(float), other[list(names)].to_numpy(float) / float(unit)
         assert np.isnan(found).tolist() == np.isnan(known).tolist()
         size = np.nanmax(np.abs(known), initial=0.0) or 1.0

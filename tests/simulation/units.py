@@ -8,6 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from fractions import Fraction
+from typing import Any
 
 from holonom.program.motion_problem import MotionProblem
 from holonom.program.motion_program import Call, Expression, Name, Operation, Program, count_operations, names_in
@@ -134,3 +135,47 @@ def _renamed(expression: Expression, names: dict[str, str]) -> Expression:
         case Call(operation, arguments):
             return Call(operation, tuple(_renamed(argument, names) for argument in arguments))
     return expression
+
+
+def description_in_length(description: dict[str, Any], length: Fraction) -> dict[str, Any]:
+    """The same systems and scenes in a description, their coordinates and velocities multiplied by this unit."""
+    system, energy = description["system"], length**2
+
+    def times(factor: Fraction, tree: Any) -> Any:
+        return ["Multiply", ["Rational", factor.numerator, factor.denominator], tree]
+
+    measured = {name: times(1 / length, name) for name in system["coordinates"]}
+    measured |= {f"dot({name})": times(1 / length, f"dot({name})") for name in system["coordinates"]}
+    measured |= {f"lambda{k}": times(1 / energy, f"lambda{k}") for k in range(1, len(system["constraints"]) + 1)}
+
+    def of(tree: Any) -> Any:
+        if isinstance(tree, list):
+            return [tree[0], *map(of, tree[1:])]
+        return measured.get(tree, tree) if isinstance(tree, str) else tree
+
+    def all_of(trees: dict[str, Any]) -> dict[str, Any]:
+        return {name: of(tree) for name, tree in trees.items()}
+
+    def lengths(values: dict[str, Any]) -> dict[str, Any]:
+        return {name: times(length, value) if name in measured else value for name, value in values.items()}
+
+    scenes = [
+        scene
+        | {name: lengths(scene[name]) for name in ("initial_state", "initial_guess", "nominal")}
+        | {name: all_of(scene[name]) for name in ("control_law", "outputs")}
+        | {name: [of(tree) for tree in scene[name]] for name in ("until", "servo_constraints")}
+        | {
+            "prescribed_reactions": {
+                name: times(energy, of(law)) for name, law in scene["prescribed_reactions"].items()
+            }
+        }
+        for scene in description["scenes"]
+    ]
+    terms = {
+        name: [{**term, "value": times(energy, of(term["value"]))} for term in system[name]]
+        for name in ("kinetic_energy", "potential_energy")
+    }
+    forces = [{**term, "value": [times(length, of(value)) for value in term["value"]]} for term in system["forces"]]
+    constraints = [of(tree) for tree in system["constraints"]]
+    others = {"forces": forces, "constraints": constraints, "drawing": []}
+    return description | {"system": system | terms | others, "scenes": scenes}
