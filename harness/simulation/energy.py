@@ -5,7 +5,9 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 """
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from functools import cache, cached_property
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -13,15 +15,20 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from ..program.motion_problem import MotionProblem, computing
-from ..program.motion_program import names_in
+from ..program.motion_program import names_in, names_used
 from ..program.precision import Precision, read_precision
 from .accuracy_check import may_hide
+from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .inputs import Inputs
 from .matrices import Vector
 
 POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a step to about the order of the Taylor engine
 MORE_DIGITS = 10  # in which they are found
+LAST, MOST_PARTS = (
+    2,
+    1024,
+)  # coefficients that show resolution; parts of an interval, for the power as a function of time
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states that show whether power vanishes
 
 
@@ -56,7 +63,9 @@ class EnergyBalance:
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
         self._multipliers = multipliers
         self._with_multipliers = bool(problem.reacting) or _constraints_move(problem)
-        hidden = bool(problem.tables) or may_hide(computing(problem.energy, {"power"}), problem.parameters)
+        power = computing(problem.energy, {"power"})
+        hidden = bool(problem.tables) or may_hide(power, problem.parameters)
+        self._of_time = "t" in names_used(power)
         self.passing = 0.0
         self.conservative = (
             not self._with_multipliers and not hidden and self._without_power(2 * len(problem.coordinates))
@@ -127,6 +136,61 @@ class EnergyBalance:
             return zeros(self._precision, 0)
         begins = np.array(starts)
         return (begins[:, None] + (np.array(ends) - begins)[:, None] / 2 * (1 + self._quadrature[0])).ravel()
+
+    def parts(self, step: Step, ends: Sequence[Any]) -> list[list[Any]]:
+        """Return the ends of parts of intervals, short enough for the quadrature.
+
+        A step is as long as the state is smooth. The power as a function of the time may change faster.
+
+        Parameters
+        ----------
+        step : Step
+            A step. The state at its initial time is taken.
+        ends : sequence of number
+            Ends of the intervals, in order.
+
+        Returns
+        -------
+        list of list of number
+            Those of each interval. The last is the end of the interval.
+        """
+        if self.conservative or not self._of_time:
+            return [[end] for end in ends]
+        state, found = step.states(np.array([step.start])), []
+        for start, end in pairwise([step.start, *ends]):
+            waiting, parts = [(start, end)], []
+            while waiting:
+                start, end = waiting.pop()
+                middle = start + (end - start) / 2
+                fine = len(parts) + len(waiting) >= MOST_PARTS or self._is_resolved(start, end, state)
+                if fine or not start < middle < end:
+                    parts.append(end)
+                else:
+                    waiting += [(middle, end), (start, middle)]
+            found.append(parts)
+        return found
+
+    def _is_resolved(self, start: Any, end: Any, state: Numbers) -> bool:
+        """Return True if the points of an interval resolve the power at one state.
+
+        Gauss's quadrature is exact for twice as many coefficients as there are points.
+        """
+        times = self.times_between([start], [end])
+        power = self.power(times, np.repeat(state, len(times), axis=1))
+        sizes = np.abs(as_floats((self._to_coefficients * power).sum(axis=1)))
+        enough = np.max(sizes[-LAST:]) <= 10.0 ** (-self._precision.sure_digits / 2) * np.max(sizes)
+        return bool(enough or not np.isfinite(sizes).all())
+
+    @cached_property
+    def _to_coefficients(self) -> Numbers:
+        """From values at the points to coefficients of Legendre's polynomials."""
+        (points, weights), ratio = self._quadrature, self._precision.ratio
+        columns = [points * 0 + ratio(Fraction(1)), points]
+        for k in range(2, len(points)):
+            columns.append(
+                ratio(Fraction(2 * k - 1, k)) * points * columns[-1] - ratio(Fraction(k - 1, k)) * columns[-2]
+            )
+        return np.array([ratio(Fraction(2 * k + 1, 2)) * column * weights for k, column in enumerate(columns)])
 
     def works(self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]) -> Numbers:
         """Return the integrals of the power over k intervals of the motion.

@@ -154,9 +154,9 @@ def with_nominal(problem: MotionProblem, span: float) -> MotionProblem:
 def first_order_changes(
     functions: Callable[[Numbers, Numbers], Numbers], times: Numbers, states: Numbers, nominal: Nominal
 ) -> Numbers:
-    """Return the changes of functions with the time and the state at nominal sizes, to first order.
+    """Return the changes of functions with time and state, to first order.
 
-    A number that is larger than its nominal size changes by itself.
+    They change by their nominal sizes, or by themselves if they are larger.
 
     Parameters
     ----------

@@ -4,7 +4,7 @@ They are processed in blocks, so that any number of samples takes the memory of 
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from itertools import groupby, islice
+from itertools import chain, groupby, islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -118,17 +118,21 @@ class Recording:
         while start != step.end:
             wanted = [step.end] if self._steps else list(islice(self._wanted_until(step.end), PORTION))
             ends = wanted if len(wanted) == PORTION or step.end in wanted[-1:] else [*wanted, step.end]
-            self._look_up(step, [start, *ends[:-1]], ends, wanted, impulse)
+            self._look_up(step._replace(start=start), ends, wanted, impulse)
             start, impulse = ends[-1], self._zero
 
-    def _look_up(self, step: Step, starts: list[Any], ends: list[Any], wanted: list[Any], impulse: Any) -> None:
+    def _look_up(self, step: Step, ends: list[Any], wanted: list[Any], impulse: Any) -> None:
         if step.mode is not self.mode or len(self._intervals) >= TOGETHER:
             self._settle()
             self.mode = step.mode
+        parts = self.mode.balance.parts(step, ends)
+        lasts, ends = np.cumsum(list(map(len, parts))) - 1, list(chain(*parts))
+        starts = [step.start, *ends[:-1]]
         inside, at_ends = self.mode.balance.times_between(starts, ends), [None] * len(ends)
         if wanted or len(inside):
             states = step.states(np.concatenate([np.array(wanted), inside]) if wanted else inside)
-            at_ends[: len(wanted)] = states[:, : len(wanted)].T
+            for last, state in zip(lasts, states[:, : len(wanted)].T, strict=False):
+                at_ends[last] = state
             self._inside.append((inside, states[:, len(wanted) :]))
         impulses = [impulse, *[self._zero] * (len(ends) - 1)]
         self._intervals += map(Interval, starts, ends, at_ends, impulses)

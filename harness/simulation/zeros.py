@@ -100,13 +100,13 @@ class SignedFunctions(ABC):
         return None
 
     def _least_after_zero(self, step: Step) -> Numbers:
-        """Return the sizes below which functions have no sign after a zero, shape (functions, 1)."""
+        """Return sizes without a sign after a zero, shape (functions, 1)."""
         nominal, start = step.mode.matrices.nominal, np.array([step.start])
         changes = first_order_changes(self.values, start, step.states(start), nominal)
         return changes * max(ZERO, ROUNDED_TIME * abs(float(step.start)) / nominal.time)
 
     def _begun(self, values: Numbers, rounding: Numbers, left: Collection[str]) -> list[int]:
-        """Return the samples from which on functions that the motion has left have a sign."""
+        """Return the sample from which on each function has a sign."""
         clear = np.abs(values) > rounding
         clear[:, 0] = False
         return [
@@ -135,7 +135,7 @@ class SignedFunctions(ABC):
         return [step._replace(start=start, end=end) for start, end in pairwise(edges)]
 
     def _first_in(self, step: Step, places: Numbers, values: Numbers, begun: Sequence[int]) -> Crossing | None:
-        """Return the first crossing among samples, of which those before each function's first one have no sign."""
+        """Return the first crossing among the samples of each function with a sign."""
         for (name, *_), row in zip(self._rows, values, strict=True):
             self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(row)))
         found = [self._in_row(step, row, places, values[row], first) for row, first in enumerate(begun)]

@@ -12,7 +12,9 @@ from holonom.simulation.energy import EnergyBalance
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices
 from holonom.simulation.nominal import Nominal
+from holonom.simulation.request import SimulationRequest
 from holonom.simulation.residuals import condition, residuals
+from holonom.simulation.simulate import simulate
 
 
 def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
@@ -68,6 +70,13 @@ def test_work_is_integrated_in_the_digits_of_the_motion(precision, digits, write
         time_span = [0, 5])$""")
     report = holonom.load(scene).simulate(precision=precision).report
     assert abs(report.energy_error) < 10.0**-digits
+
+
+def test_work_of_a_control_was_integrated_by_the_points_of_a_step_as_long_as_the_state_is_smooth():
+    """The bob stays upright, its support is shaken ten times a second: energy and work are those of the support."""
+    report = simulate(problem("shaken_pendulum.mac", "upright_scene"), SimulationRequest(samples=7)).report
+    assert report.steps == 1
+    assert report.trusted
 
 
 def test_where_nothing_does_work_the_energy_stays():
