@@ -3,6 +3,7 @@
 The scenes in ``chinese/`` are drawn to meet many messages; their titles are in Chinese.
 """
 
+import re
 from pathlib import Path
 
 import pages
@@ -44,6 +45,15 @@ def shown(page: Path) -> list[str]:
 def test_no_page_has_english_prose(chinese):
     found = {page.name: [words for text in shown(page) for words in english_in(text)] for page in pages.pages(chinese)}
     assert {name: words for name, words in found.items() if words} == {}
+
+
+@pytest.mark.long
+def test_the_page_of_a_system_lists_its_scenes_those_too_that_the_record_lacks(chinese):
+    for place, file in enumerate(SCENES, 1):
+        titles = re.findall(r'holonomic_scene\(system, title = "(\w+)"', file.read_text(encoding="utf-8"))
+        headings = [head.text for head in pages.parsed(chinese / f"{place}-{file.stem}-the-system.html").iter("h3")]
+        assert titles
+        assert [title for title in titles if not any(title in (head or "") for head in headings)] == []
 
 
 @pytest.mark.long
