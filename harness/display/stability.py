@@ -40,8 +40,11 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
     for name in shown:
         table.add_column(name, justify="right")
     largest = max(map(abs, found.eigenvalues), default=0.0)
-    for value, damping, mode in zip(found.eigenvalues, found.damping, found.modes.T, strict=True):
-        if value.imag >= 0:  # the conjugate has the conjugate mode
+    columns = found.eigenvalues, found.eigenvalue_errors, found.damping, found.modes.T
+    for value, error, damping, mode in zip(*columns, strict=True):
+        if abs(value) <= error:
+            table.add_row(f"0 (to {abs(value):.1g})" if value else "0", "0", "0", *map(_number, mode[: len(shown)]))
+        elif value.imag >= 0:  # the conjugate has the conjugate mode
             seen = _rounded(value, largest)
             ratio = f"{damping:.4g}" if seen and seen.real else "0"
             table.add_row(_pair(seen), f"{abs(seen) / (2 * pi):.6g}", ratio, *map(_number, mode[: len(shown)]))

@@ -20,7 +20,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
@@ -30,7 +29,7 @@ from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from .linear_equations import LinearEquations, Point
-from .linearization import Linearization, linearized
+from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -456,9 +455,7 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
 def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vector]) -> tuple[Vector, np.ndarray]:
     """Return signed distances of eigenvalues, and True for those with certain signs.
 
-    They are distances from a line or a circle. The sign is certain if it holds under a relative error of A. An
-    eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
-    section 7.2).
+    They are distances from a line or a circle. The sign is certain if it holds under a relative error of A.
 
     Parameters
     ----------
@@ -473,12 +470,6 @@ def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vect
     distances : ndarray, shape (s,)
     certain : ndarray of bool, shape (s,)
     """
-    if not A.size:
-        return np.empty(0), np.empty(0, dtype=bool)
-    balanced = scipy.linalg.matrix_balance(A, permute=False)[0]
-    values, left, right = scipy.linalg.eig(balanced, left=True, right=True)
-    with np.errstate(divide="ignore"):
-        conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    moved = error * np.linalg.norm(balanced, 2) * conditions
+    values, moved, conditions = perturbed_eigenvalues(A, error)
     distances = distance(values)
     return distances, (np.abs(distances) > moved) & (conditions < NEARLY_DEFECTIVE)

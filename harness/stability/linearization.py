@@ -47,6 +47,7 @@ if TYPE_CHECKING:
 RATES = ("u", "du", "ddu")  # a control, its time derivative and its acceleration
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
 ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
+ROUNDED = 16 * np.finfo(float).eps  # rounding errors of A, relative
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
 
 
@@ -119,6 +120,19 @@ class Linearization(Shown):
     def eigenvalues(self) -> Vector:
         """Eigenvalues of A, shape (2m,), complex, the slowest first."""
         return self._modes[0]
+
+    @property
+    def eigenvalue_errors(self) -> Vector:
+        """Rounding errors of the eigenvalues to expect, shape (2m,).
+
+        They are the condition numbers of the eigenvalues times the rounding errors of A, at most those of a double
+        eigenvalue, their square root.
+        """
+        values, moved, _ = perturbed_eigenvalues(self.A, ROUNDED)
+        if not values.size:
+            return moved
+        nearest = np.argmin(np.abs(self.eigenvalues[:, None] - values), axis=1)
+        return np.minimum(moved[nearest], np.sqrt(ROUNDED) * np.linalg.norm(self.A, 2))
 
     @property
     def modes(self) -> Matrix:
@@ -611,3 +625,28 @@ def _reachable(A: Matrix, B: Matrix) -> int:
         new = left[:, values > UNREACHED]
         reached, B = np.concatenate([reached, new], axis=1), A @ new
     return reached.shape[1]
+
+
+def perturbed_eigenvalues(A: Matrix, error: float) -> tuple[Vector, Vector, Vector]:
+    """Return eigenvalues, their changes under an error of A, and their conditions.
+
+    An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
+    section 7.2).
+
+    Parameters
+    ----------
+    A : ndarray, shape (s, s)
+    error : float
+        Relative.
+
+    Returns
+    -------
+    values, changes, conditions : ndarray, shape (s,)
+    """
+    if not A.size:
+        return np.empty(0), np.empty(0), np.empty(0)
+    balanced = scipy.linalg.matrix_balance(A, permute=False)[0]
+    values, left, right = scipy.linalg.eig(balanced, left=True, right=True)
+    with np.errstate(divide="ignore"):
+        conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    return values, error * np.linalg.norm(balanced, 2) * conditions, conditions

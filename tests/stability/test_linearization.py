@@ -62,6 +62,23 @@ def test_a_bead_at_the_lowest_point_of_a_fast_hoop_leaves_it():
     assert sorted(found.eigenvalues.real) == pytest.approx([-np.sqrt(15), np.sqrt(15)], rel=1e-12)
 
 
+@pytest.mark.parametrize(("k", "zeros"), [(0, 2), (3, 0)])
+def test_a_double_zero_is_zero_to_its_rounding_errors(k, zeros):
+    """A cart with a pendulum, on a spring or on none: its eigenvalues were 2e-8 and -2e-8, with damping."""
+    found = holonom.system(
+        """system : holonomic_system(coordinates = [s, x, y], parameters = [k], kinetic_energy =
+          dot(s)^2 + (dot(x)^2 + dot(y)^2)/2, potential_energy = 981/100*y + k*s^2/2,
+          constraints = [(x - s)^2 + y^2 - 1])$
+        rest : holonomic_scene(system, initial_state = [s = 0, x = 0, y = -1, dot(s) = 0, dot(x) = 0, dot(y) = 0],
+          time_span = [0, 1])$""",
+        k=k,
+    ).linearize(at=0)
+    assert np.sum(np.abs(found.eigenvalues) <= found.eigenvalue_errors) == zeros
+    assert np.max(found.eigenvalue_errors) < 1e-6
+    squares = np.linalg.eigvals(np.linalg.solve([[3, 1], [1, 1]], [[k, 0], [0, 9.81]]))
+    assert np.max(found.eigenvalues.imag) == pytest.approx(np.sqrt(np.max(squares)), abs=1e-12)
+
+
 def test_modes_of_the_double_pendulum():
     found = holonom.system(DOUBLE_PENDULUM).linearize()
     shapes = {tuple(np.round(np.real(mode[[0, 2]] / mode[0]), 10)) for mode in found.modes.T}
