@@ -48,7 +48,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile, is_forced
     metavar="FILE|DIR",
     type=OutputFile(json=True, directory=True),
     default=STANDARD_OUTPUT,
-    help="Destination: a directory for c, otherwise a file.",
+    help="Destination: a directory for c, otherwise a file. Default: standard output.",
 )
 @runs_scenes
 def program(
