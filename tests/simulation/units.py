@@ -10,7 +10,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any
 
-from holonom.program.motion_problem import MotionProblem
+from holonom.program.motion_problem import DependsOn, MotionProblem
 from holonom.program.motion_program import Call, Expression, Name, Operation, Program, count_operations, names_in
 from holonom.simulation.matrices import INDEXED
 
@@ -98,6 +98,8 @@ def _of_output(output: str, problem: MotionProblem, units: Units) -> Fraction:
         return _of_inputs(problem, units)[output]
     if output.startswith("ddot("):
         return length / time**2
+    if indexed and indexed[1] == "switch" and problem.signs[int(indexed[2]) - 1].by is DependsOn.REACTION:
+        return energy
     if indexed is None:
         return {"energy": energy, "power": energy / time}.get(output, Fraction(1))
     return {
