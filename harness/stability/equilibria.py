@@ -44,7 +44,9 @@ DEPENDENT = 1e-12  # singular values of a step's equations, relative to the larg
 ROUNDING = 1e-12  # of a size
 NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
-LEAST_STIFFNESS = 1e-7  # relative to the largest: what is smaller, or an eigenvalue with a smaller part, is not decided
+LEAST_STIFFNESS = (
+    1e-7  # relative to the changes of all forces: what is smaller, or an eigenvalue with a smaller part, is not decided
+)
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
@@ -315,7 +317,7 @@ class _Search:
             if stiffness is None:
                 singular += 1
                 continue
-            found = _Solution(q, multipliers, stiffness)
+            found = _Solution(q, multipliers, *stiffness)
             if any(found.same_family(other) for other in known):
                 more += 1
             else:
@@ -334,10 +336,10 @@ class _Search:
             linear,
         )
 
-    def _stiffness(self, q: Vector, multipliers: Vector) -> Matrix | None:
-        """Return the change of the forces along the constraint manifold, shape (m, m).
+    def _stiffness(self, q: Vector, multipliers: Vector) -> tuple[Matrix, float] | None:
+        """Return the change of the forces along the manifold, and a bound for its size.
 
-        None in a singular configuration.
+        Its shape is (m, m). None in a singular configuration.
 
         For forces with a potential it is the second variation.
         """
@@ -350,7 +352,9 @@ class _Search:
         shrunk = np.any(gradients < NEARLY_SINGULAR * self._gradients)
         if shrunk or tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
             return None
-        return tangent.basis.T @ here["equation_by_q"] @ tangent.basis
+        changes = here["equation_by_q"]
+        bound = np.linalg.norm(changes, 2) * np.linalg.norm(tangent.basis, 2) ** 2 if tangent.basis.size else 0.0
+        return tangent.basis.T @ changes @ tangent.basis, float(bound)
 
     def _solved(self, q: Matrix) -> Iterator[tuple[Vector, Vector]]:
         """Return solutions by Newton's method from k starting points, shape (n, k).
@@ -417,6 +421,7 @@ class _Solution(NamedTuple):
     q: Vector
     multipliers: Vector
     stiffness: Matrix
+    bound: float  # of the stiffness: that of the changes of all forces, which may cancel along the manifold
 
     @property
     def _principal(self) -> Vector:
@@ -424,16 +429,16 @@ class _Solution(NamedTuple):
 
     @property
     def isolated(self) -> bool:
-        values = self._principal
-        return bool(values.min(initial=np.inf) > LEAST_STIFFNESS * values.max(initial=0.0))
+        return bool(self._principal.min(initial=np.inf) > LEAST_STIFFNESS * self.bound)
 
     def same_family(self, other: "_Solution") -> bool:
         """Return True if neither is isolated and multipliers and stiffnesses agree.
 
         The stiffnesses are the principal ones.
         """
-        alike = _same(self.multipliers, other.multipliers) and _same(self._principal, other._principal)
-        return alike and not self.isolated and not other.isolated
+        apart = np.max(np.abs(self._principal - other._principal), initial=0.0)
+        alike = _same(self.multipliers, other.multipliers) and apart <= SAME * max(self.bound, other.bound)
+        return bool(alike and not self.isolated and not other.isolated)
 
 
 def _same(one: Vector, other: Vector) -> bool:
@@ -444,7 +449,7 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
     """Decide the stability by the second variation, if any, and the eigenvalues of A."""
     if not forced:
         values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
-        if np.all(values > LEAST_STIFFNESS * np.max(np.abs(values), initial=0.0)):
+        if np.all(values > LEAST_STIFFNESS * found.bound):
             return Stability.STABLE
     parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real)
     if np.any(certain & (parts > 0)):

@@ -269,3 +269,16 @@ def test_a_scene_starts_at_rest_in_an_equilibrium_by_name(tmp_path, holonom_here
     with pytest.raises(HolonomError) as error:
         scene.at_equilibrium("e9")
     assert error.value.kind is ErrorKind.NO_SUCH_EQUILIBRIUM
+
+
+def test_the_fork_of_a_bead_on_a_turning_hoop_is_one_equilibrium():
+    """At w^2 = g/r three of its equilibria meet: those found beside it were called stable."""
+    found = holonom.system(
+        """system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2 + 10*x^2)/2,
+          potential_energy = 10*z, constraints = [x^2 + z^2 - 1])$
+        turning : holonomic_scene(system, initial_state = [x = 0, z = -1, dot(x) = 0], time_span = [0, 1])$"""
+    ).equilibria()
+    assert [(round(each.coordinates["z"], 9), each.stability) for each in found.found] == [
+        (-1, "undecided"),
+        (1, "unstable"),
+    ]
