@@ -99,13 +99,11 @@ class _Check:
     def _checked(self, derived: Derivation) -> CheckedDerivation:
         system = described_system(self._premises.system, derived.effects)
         independent = system.without(derived.redundant)
-        size = predicted_size(self._premises.system, derived, independent, self._limit)
         return CheckedDerivation(
             IndependentEquations(system),
             IndependentEquations(independent, derived.mass_matrix == "supported"),
             tuple(derived.equations),
-            size,
-            size <= self._limit or derived.left_out is None,  # beyond the limit they may be there
+            predicted_size(self._premises.system, derived, independent, self._limit),
             len(system.coordinates) ** 2 <= self._limit,
         )
 
@@ -118,17 +116,16 @@ class _Check:
     def _on_derivation(
         self, place: Place, derived: Derivation, checked: CheckedDerivation
     ) -> Iterator[EquationVerdict]:
-        items = derivation_items(
-            checked.is_closed, derived.mass_matrix == "regular", derived.redundant, checked.all_entries
-        )
+        closed = checked.size <= self._limit
+        items = derivation_items(closed, derived.mass_matrix == "regular", derived.redundant, checked.all_entries)
         yield from self._on_equations(place, derived, items, checked, derivation.COMPARISONS)
         from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
 
         if lagranges_method.can_take(checked.known.system):
             yield self._verify(place, OPINION, lambda: lagranges_method.compare(checked.known), checked.system)
-        yield from self._on_left_out(place, derived.left_out, () if checked.is_closed else CLOSED_NUMBERS, checked.size)
+        yield from self._on_left_out(place, derived.left_out, () if closed else CLOSED_NUMBERS, checked.size)
         solved = [each for each in derived.equations if each.id in ("multipliers", "accelerations")]
-        operations = operations_of(solved) if checked.is_closed else None
+        operations = operations_of(solved) if closed else None
         if derived.closed_form_operations != operations:
             detail = translatable(
                 "the record counts %(recorded)s, and there are %(operations)s",
@@ -157,7 +154,7 @@ class _Check:
 
     def _on_scene(self, place: Place, checked: CheckedScene) -> Iterator[EquationVerdict]:
         size = checked.derivation.size
-        closed, law = checked.derivation.is_closed, bool(checked.premises.control_law)
+        closed, law = size <= self._limit, bool(checked.premises.control_law)
         if closed:
             accelerations = [each for each in checked.derivation.equations if each.id == "accelerations"]
             size = length_of(accelerations[0]) if accelerations else 0

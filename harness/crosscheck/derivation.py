@@ -41,7 +41,6 @@ class CheckedDerivation:
     known: IndependentEquations  # of its independent constraints: what is solved
     equations: tuple[Equation, ...]
     size: int = 0  # predicted, of the closed forms
-    is_closed: bool = True  # whether the record must hold them
     all_entries: bool = True  # whether (3a) holds all entries of A, its zeros among them
 
     @property
