@@ -18,6 +18,7 @@ from holonom.simulation.constraints.program_projection import (
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import LazyCompiledFunction, evaluation, evaluation_once
 from holonom.simulation.hybrid_motion import HybridMotion
+from holonom.simulation.inputs import Inputs
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import SimulationRequest
 
@@ -78,9 +79,13 @@ def test_numpy_and_heyoka_compute_the_same(problem, states, program):
 
 
 def test_projection_moves_to_the_nearest_state_and_tells_the_way(problem, states):
-    compiled, keeper = nearest_state(problem, DOUBLE), ProgramProjection(problem, DOUBLE)
+    compiled, keeper, inputs = (
+        evaluation(problem.projection, DOUBLE),
+        ProgramProjection(problem, DOUBLE),
+        Inputs(problem),
+    )
     for point in states.T:
-        state, found = point[1:].copy(), compiled(np.ascontiguousarray(point))
+        state, found = point[1:].copy(), nearest_state(compiled, inputs(point[0], point[1:]), len(point) - 1)
         moved = keeper.project(point[0], state)
         assert np.allclose(state, found, rtol=1e-13, atol=1e-13)
         assert moved == pytest.approx(distance(point[1:], found, nominal_of(problem).state), rel=1e-12)
