@@ -125,7 +125,7 @@ def test_a_missing_package_is_one_sentence_with_the_command_that_installs_it(pac
 def test_all_incomplete_extras_are_named_at_once(monkeypatch):
     absent = {"heyoka", "dask", "build"}  # of motion, of sweep, and for those who develop alone
     monkeypatch.setattr(extras, "version_of", lambda package: None if package in absent else "1")
-    assert "holonom[companion,motion,sweep]" in extras.missing_package("matplotlib").detail
+    assert "holonom[companion,motion,sweep]" in str(extras.missing_package("matplotlib"))
 
 
 def test_free_motion_is_reported_by_the_core_alone_where_it_broke_off_after_two_lines():
