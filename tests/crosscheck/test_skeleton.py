@@ -58,8 +58,8 @@ class TestEquations:
         for part in ("derivations", "scenes"):
             first, *others = getattr(every_term_record, part)
             for each in first.equations:
-                others = tuple(equation for equation in first.equations if equation != each)
-                parts = (dataclasses.replace(first, equations=others), *others)
+                remaining = tuple(equation for equation in first.equations if equation != each)
+                parts = (dataclasses.replace(first, equations=remaining), *others)
                 false = dataclasses.replace(every_term_record, **{part: parts})
                 assert each.id in disagreeing(false, every_term_description)
 
