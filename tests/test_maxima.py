@@ -81,7 +81,7 @@ def test_a_file_that_ends_badly_is_named(text, failure, write_scene):
     assert str(error).startswith(f"{file}: ")
 
 
-@pytest.mark.parametrize("text", ["for i do 1$", 'system("sleep 60")$'])
+@pytest.mark.parametrize("text", ["for i do 1$", f'{SHELL} in_a_shell("sleep 60")$'])
 def test_a_file_that_never_ends_is_ended(text, write_scene):
     assert failure_of(write_scene(text), replace(LONG, seconds=1)).kind is ErrorKind.TOO_LONG
 
