@@ -53,12 +53,10 @@ def draw_tilted_plane(particle: Sequence[float], tilt: float) -> str:
         _fill(axes, [*corners, corners[1] + up, corners[0] + up], BLUE, 0.18)
         axes.plot(*_seen(np.array(corners)).T, color=INK, linewidth=3.5)
         _label(axes, corners[0] + np.array([0.0, 0.1, 0.2]), gettext("hinge: q₁ + q₂ = 0"), INK, "left")
-        angle = [corners[0] + np.array([level[0], level[1], part * up[2]]) for part in np.linspace(0, 1, 9)]
-        axes.plot(*_seen(np.array(angle)[:-1]).T, color=VERMILION, linewidth=1.6)
-        _arrow(axes, angle[-2], angle[-1] - angle[-2], VERMILION, 1.6)
-        _label(
-            axes, angle[4] + np.array([0.0, 0.12, 0.0]), gettext("the control u\ntilts the plane"), VERMILION, "left"
-        )
+        rise = [corners[0] + np.array([level[0], level[1], part * up[2]]) for part in np.linspace(0, 1, 9)]
+        axes.plot(*_seen(np.array(rise)[:-1]).T, color=VERMILION, linewidth=1.6)
+        _arrow(axes, rise[-2], rise[-1] - rise[-2], VERMILION, 1.6)
+        _label(axes, rise[4] + np.array([0.0, 0.12, 0.0]), gettext("the control u\ntilts the plane"), VERMILION, "left")
         _arrow(axes, q, ARROW * normal, GREEN, 2.2)
         _label(axes, q + 1.12 * ARROW * normal, gettext("reaction λ ∂f/∂q"), GREEN, "left")
         axes.plot(*_seen(q), "o", color=VERMILION, markersize=9)

@@ -25,10 +25,8 @@ from .matrices import Vector
 
 POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a step to about the order of the Taylor engine
 MORE_DIGITS = 10  # in which they are found
-LAST, MOST_PARTS = (
-    2,
-    1024,
-)  # coefficients that show resolution; parts of an interval, for the power as a function of time
+LAST = 2  # coefficients of the power as a function of time that show whether it is resolved
+MOST_PARTS = 1024  # of an interval
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states that show whether power vanishes
 
 

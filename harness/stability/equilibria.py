@@ -44,9 +44,7 @@ DEPENDENT = 1e-12  # singular values of a step's equations, relative to the larg
 ROUNDING = 1e-12  # of a size
 NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
-LEAST_STIFFNESS = (
-    1e-7  # relative to the changes of all forces: what is smaller, or an eigenvalue with a smaller part, is not decided
-)
+LEAST_STIFFNESS = 1e-7  # relative to the changes of all forces: what is smaller is not decided
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
