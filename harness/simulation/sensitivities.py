@@ -232,8 +232,14 @@ class Sensitivities:
     ) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
-            detail = f"unknown name {unknown[0]}: it is neither a parameter nor one of {', '.join(problem.state)}"
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable(
+                    "unknown name %(name)s: expected a parameter or one of %(names)s",
+                    name=unknown[0],
+                    names=", ".join(problem.state),
+                ),
+            )
         if problem.reacting:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=translatable("forces contain multipliers"))
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
