@@ -1,20 +1,16 @@
 """A hard case: its difficulty, its reference solution and each method's digits."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-import mpmath
-from mpmath import mp, mpf
+import numpy as np
+from numpy.typing import ArrayLike
 
 from ...language import translatable
 from ...simulation.hard_cases import Difficulty
 
 MOST = 16.0  # digits of a double
-TRUTH_DIGITS = 40  # that a truth is computed with
-
-certified = mp.workdps(TRUTH_DIGITS)
-"""Decorates what computes a truth; as a context, what its constants are made in."""
 
 
 class Extent(StrEnum):
@@ -169,7 +165,7 @@ def required(method: str, quantity: str, holds: bool) -> Result:
     return Result(method, quantity, None, Outcome.HOLDS if holds else Outcome.FAILS)
 
 
-def correct_digits(computed: Iterable[float], truth: Iterable[mpf], scale: float | mpf | None = None) -> float:
+def correct_digits(computed: ArrayLike, truth: ArrayLike, scale: float | None = None) -> float:
     """Return the correct decimal digits of the worst number, from 0 to 16.
 
     An error is relative to the scale. Without it, to the largest of the true numbers. Numbers that are not finite have
@@ -177,37 +173,35 @@ def correct_digits(computed: Iterable[float], truth: Iterable[mpf], scale: float
 
     Parameters
     ----------
-    computed : iterable of float
+    computed : array_like of float, shape (n,)
         Computed numbers.
-    truth : iterable of mpf
-        True numbers, as many.
-    scale : float, mpf or None
+    truth : array_like of float, shape (n,)
+        True numbers.
+    scale : float or None
         Size to which errors are relative.
 
     Returns
     -------
     float
     """
-    pairs = [(mpf(float(value)), exact) for value, exact in zip(computed, truth, strict=True)]
-    if not all(mpmath.isfinite(value) for value, _ in pairs):
-        return 0.0
-    return digits_of_error(max(abs(value - exact) for value, exact in pairs), scale or max(abs(x) for _, x in pairs))
+    error = np.max(np.abs(np.subtract(computed, truth)))
+    return digits_of_error(error, scale or np.max(np.abs(truth)))
 
 
-def digits_of_error(error: float | mpf, scale: float | mpf) -> float:
+def digits_of_error(error: float, scale: float) -> float:
     """Return the decimal digits that an error leaves of a number, from 0 to 16.
 
     Parameters
     ----------
-    error : float or mpf
+    error : float
         Absolute error, not negative.
-    scale : float or mpf
+    scale : float
         Size of the number.
 
     Returns
     -------
     float
     """
-    if not mpmath.isfinite(error):
+    if not np.isfinite(error):
         return 0.0
-    return float(min(MOST, max(0.0, -mpmath.log10(error / scale)))) if error else MOST
+    return float(np.clip(-np.log10(error / scale), 0.0, MOST)) if error else MOST

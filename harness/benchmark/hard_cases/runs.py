@@ -4,13 +4,12 @@ The baseline solves the bordered system at every call and has no stabilization.
 """
 
 import warnings
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from mpmath import mpf
 
 from ...files import shared
 from ...language import translatable
@@ -105,7 +104,7 @@ def _numbers(values: Mapping[str, float]) -> Vector:
 
 
 def place_digits(
-    quantity: str, baseline: Vector, motion: Arrived, truth: Sequence[mpf], needed: float, scale: float | None = None
+    quantity: str, baseline: Vector, motion: Arrived, truth: list[float], needed: float, scale: float | None = None
 ) -> Iterator[Result]:
     """Yield the digits of the first coordinates, by the baseline and by Holonom.
 
@@ -117,7 +116,7 @@ def place_digits(
         Final state by the baseline.
     motion : Arrived
         Final state by Holonom.
-    truth : sequence of mpf
+    truth : list of float
         True values of the first coordinates.
     needed : float
         Number of correct digits required of Holonom.
