@@ -26,7 +26,7 @@ from .failures import ErrorKind, HolonomError
 from .files import near_file, shared
 from .hidden import visible_line
 from .language import Message, translatable
-from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken
+from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken, share_of_memory
 from .sandbox import MIB, LimitExceeded, Limits, Place, Sandbox, is_isolated, run_process, surroundings
 from .scene_files import copy_scene_files
 from .supervisor import doing
@@ -463,7 +463,7 @@ def _place(run: Run, maxima: Path) -> Place:
         "LC_ALL": "C",
         # GCL collects garbage in earnest from about a fifth of this share of the machine's memory on (measured), well
         # under the limit: what garbage there is depends on the limit then, and not on the machine.
-        "GCL_MEM_MULTIPLE": f"{run.limits.memory_mib * MIB / _memory_of_the_machine():.6f}",
+        "GCL_MEM_MULTIPLE": share_of_memory(run.limits.memory_mib),
         # So large a share of its memory GCL allocates between two collections of garbage. With its own twentieth it
         # collects more than a hundred times while it writes the program of a thousand bodies, with this a few times in
         # the same memory. With a fifth, 24 derivatives of a gamma function take 3.7 GiB, with this 1.3 (measured).
@@ -475,10 +475,6 @@ def _place(run: Run, maxima: Path) -> Place:
     read = run.reads_files and is_isolated(run.limits)
     copies = copy_scene_files(run.file, run.directory, run.limits.allow) if read else {}
     return Place(run.directory, environment, run.limits, (*surroundings(maxima), LIBRARY), copies, outputs)
-
-
-def _memory_of_the_machine() -> int:
-    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
 
 
 def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:

@@ -7,20 +7,17 @@
 
 (defun save-with-library (library &rest jobs)
   "Load the library and the files JOBS, compile their functions, and save this Maxima in a file called image, in the
-working directory; where no image can serve, do nothing."
-  (when (images-serve-p)
-    (mfuncall '$load (concatenate 'string library "/holonom.mac"))
-    (mfuncall '$load "stringproc")      ; which Maxima looks for and interprets when its first function is called
-    (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
-    (mapc #'load jobs)
-    (ignore-errors (load-compiled (functions-of library jobs)))
-    (setq *maxima-started* nil *asked-for* nil)
-    #+gcl (si::save-system "image"))
+working directory; another Lisp than GCL saves none."
+  #+gcl (progn
+          (mfuncall '$load (concatenate 'string library "/holonom.mac"))
+          (mfuncall '$load "stringproc")      ; which Maxima looks for and interprets when its first function is called
+          (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
+          (mapc #'load jobs)
+          (ignore-errors (load-compiled (functions-of library jobs)))
+          (setq *maxima-started* nil *asked-for* nil)
+          (si::gbc t)
+          (si::save-system "image"))
   (quit))
-
-(defun images-serve-p ()
-  "An image of GCL 2.7 takes errors of syntax for the end of the file, and does not start with little memory."
-  (search "GCL 2.6" (lisp-implementation-version)))
 
 (defun functions-of (library jobs)
   "The text of all functions that the library, in its namespace, and the files JOBS define in Lisp."

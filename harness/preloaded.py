@@ -3,7 +3,7 @@
 In an image the library's Lisp functions, and those that runs are made of, are compiled (`preload.lisp`). The name of
 an image is the hash of its dependencies: the program, the library's text, this file. An image is written completely,
 after it ran once, and is used unchanged. If there is none, or none can be made, a run loads the library, with the
-same results. Only GCL 2.6, on which Maxima of Debian 12 runs, makes them here.
+same results. Only GCL, on which Maxima of Debian runs, makes them here.
 """
 
 import fcntl
@@ -25,10 +25,11 @@ ENVIRONMENT = {"GCL_GC_PAGE_THRESH": "0.2", "GCL_GC_ALLOC_MIN": "0.01", "GCL_GC_
 ARGUMENTS = ("-eval", "(cl-user::run)", "-f", "--")
 QUIET = ("--init=/dev/null", "--very-quiet")
 
-MOST_IMAGES = 8  # images, of several versions or installations: a gigabyte
+MOST_IMAGES = 8  # images, of several versions or installations: one or two gigabytes
 FREE_SPACE = 1024 * MIB  # on a fuller disk none is made
 ASKED_AGAIN = 3600.0  # seconds after which a Maxima that made none tries again: the machine may have been busy
 MAKING = Limits(seconds=300.0, sandbox=Sandbox.TRUSTED)  # only the library is run
+MEMORY_OF_IMAGES = 1024  # MiB that GCL takes the machine to have: GCL 2.7 saves all pages that it allocated
 PRELOAD = Path(__file__).with_name("preload.lisp")
 JOBS = (Path(__file__).with_name("headless.lisp"),)  # what runs are made of
 
@@ -79,6 +80,22 @@ def remove_if_broken(image: Path, place: Place) -> None:
     with suppress(LimitExceeded, OSError):
         if not _runs(image, replace(place, limits=MAKING)):
             image.unlink()
+
+
+def share_of_memory(mebibytes: int) -> str:
+    """Return the share of the machine's memory that GCL is to count with.
+
+    Parameters
+    ----------
+    mebibytes : int
+        Memory in MiB.
+
+    Returns
+    -------
+    str
+        A number, for the environment.
+    """
+    return f"{mebibytes * MIB / (os.sysconf('SC_PHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')):.6f}"
 
 
 def quoted(text: str | Path) -> str:
@@ -149,7 +166,8 @@ def _make(image: Path, maxima: str, library: Path, environment: Mapping[str, str
     An empty file records that it cannot, or that the image does not run.
     """
     with private_directory() as directory:
-        inside = {"HOME": str(directory), "TMPDIR": str(directory), "MAXIMA_USERDIR": str(directory), "LC_ALL": "C"}
+        inside = {name: str(directory) for name in ("HOME", "TMPDIR", "MAXIMA_USERDIR")}
+        inside |= {"LC_ALL": "C", "GCL_MEM_MULTIPLE": share_of_memory(MEMORY_OF_IMAGES)}
         place = Place(directory, {**environment, **ENVIRONMENT, **inside}, MAKING)
         saved = directory / "image"
         if not _saves(saved, maxima, library, place):
