@@ -14,6 +14,7 @@ from holonom.maxima import LIBRARY, run_batch
 CASES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 ROWS: dict[str, list[dict[str, str]]] = CASES["refusals"]
 SOURCES = [file for ending in ("mac", "lisp") for file in sorted(Path(LIBRARY).rglob(f"*.{ending}"))]
+NEGATIVE = re.compile(r"-\((\w+[*/]\w+)\)")  # as Maxima 5.47 and later write -4/5
 ASKING = """
 met : []$
 asks(%asked) := met : endcons(
@@ -41,7 +42,8 @@ def answers(tmp_path_factory) -> dict[str, list[list[str]]]:
 
 @pytest.mark.parametrize("refusal", ROWS)
 def test_a_refusal_has_its_id_and_its_messages(answers, refusal):
-    assert [met[:2] for met in answers[refusal]] == [[refusal, row["message"]] for row in ROWS[refusal]]
+    met = [[kind, NEGATIVE.sub(r"-\1", message)] for kind, message, _ in answers[refusal]]
+    assert met == [[refusal, row["message"]] for row in ROWS[refusal]]
 
 
 @pytest.mark.parametrize("refusal", ROWS)

@@ -209,7 +209,8 @@ class Answer(SphinxDirective):
             Nodes of the page.
         """
         number = 1 + self.env.new_serialno("answer")
-        begin = f'<details id="answer-{number}"><summary>{gettext("Answer")} {number}</summary><div class="answer">'
+        title = gettext("Answer")
+        begin = f'<details id="answer-{number}"><summary>{title} {number}</summary><div class="answer">'
         parts = _html(begin), *self.parse_content_to_nodes(), _html("</div></details>")
         return [nodes.container("", *parts, classes=[APART])]
 
