@@ -201,9 +201,7 @@ def _change_of_accelerations(at: MotionState, moves: Matrix) -> Matrix:
     here, matrices = at.here, at.matrices
     rank = rank_of(weighted_constraints(here.mass, here.jacobian).singular_values())
     factored = DependentConstraints(here.mass, here.jacobian, rank)
-    accelerations, multipliers = (
-        solve(here.force, here.curvature) for solve in (factored.accelerations, factored.multipliers)
-    )
+    accelerations, multipliers = factored.unknowns(here.force, here.curvature)
     changes = []
     lengths = DIFFERENCE / np.max(np.abs(moves) / matrices.nominal.state[:, None], axis=0)
     steps = (lengths * moves).T

@@ -119,8 +119,7 @@ def pivoted(matrices: Matrices) -> Solved:
     Solved
     """
     factored = factored_constraints(matrices.mass, matrices.jacobian)
-    sides = matrices.force, matrices.curvature
-    return Solved(factored.accelerations(*sides), factored.multipliers(*sides))
+    return Solved(*factored.unknowns(matrices.force, matrices.curvature))
 
 
 def programmed(motion: MotionProblem) -> SolveAt:

@@ -71,7 +71,6 @@ class FactoredConstraints(ABC):
         ndarray, shape (g,)
         """
 
-    @abstractmethod
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Return a of A a - J^T lambda = h, J a = -c.
 
@@ -86,6 +85,7 @@ class FactoredConstraints(ABC):
         -------
         ndarray, shape (n,)
         """
+        return self.unknowns(force, curvature)[0]
 
     @abstractmethod
     def correction(self, residual: Vector) -> Vector:
@@ -102,8 +102,8 @@ class FactoredConstraints(ABC):
         """
 
     @abstractmethod
-    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Return the least multipliers of A a - J^T lambda = h, J a = -c.
+    def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
+        """Return a and the least multipliers of A a - J^T lambda = h, J a = -c.
 
         Parameters
         ----------
@@ -114,7 +114,8 @@ class FactoredConstraints(ABC):
 
         Returns
         -------
-        ndarray, shape (g,)
+        accelerations : ndarray, shape (n,)
+        multipliers : ndarray, shape (g,)
         """
 
 
@@ -167,22 +168,6 @@ class IndependentConstraints(FactoredConstraints):
         """
         return np.abs(self._scale * residual)
 
-    def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Return the accelerations, refined until changes are rounding errors.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
-        return self._refined(force, curvature)[0]
-
     def correction(self, residual: Vector) -> Vector:
         """Return the least change by one solve, without refinement.
 
@@ -197,8 +182,8 @@ class IndependentConstraints(FactoredConstraints):
         """
         return self._solved(np.zeros_like(self._roots), residual)[0]
 
-    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Return the multipliers, which are unique.
+    def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
+        """Return accelerations and multipliers, refined until changes are rounding errors.
 
         Parameters
         ----------
@@ -209,9 +194,23 @@ class IndependentConstraints(FactoredConstraints):
 
         Returns
         -------
-        ndarray, shape (g,)
+        accelerations : ndarray, shape (n,)
+        multipliers : ndarray, shape (g,)
         """
-        return self._refined(force, curvature)[1]
+        accelerations, multipliers = self._solved(force, curvature)
+        last, open_ = np.inf, True
+        for _ in range(REFINEMENTS):
+            missed = force - np.matvec(self._mass, accelerations) + np.vecmat(multipliers, self._jacobian)
+            change, further = self._solved(missed, curvature + np.matvec(self._jacobian, accelerations))
+            size = self.length(change) / or_one(self.length(accelerations))
+            open_ = open_ & (size <= CONTRACTION * last)
+            if not np.any(open_):
+                break
+            chosen = np.asarray(open_)[..., None]
+            accelerations = np.where(chosen, accelerations + change, accelerations)
+            multipliers = np.where(chosen, multipliers + further, multipliers)
+            last, open_ = size, open_ & (size > ROUNDING)
+        return accelerations, multipliers
 
     def _factored(self, mass: Matrix, roots: Matrix, directions: Matrix) -> Any:
         """Return SuperLU's factors of the system of k states, or None if it is singular."""
@@ -236,23 +235,6 @@ class IndependentConstraints(FactoredConstraints):
             for each in zip(mass, self._jacobian.reshape(k, g, n), strict=True):
                 weighted_constraints(*each)  # rejects masses that make it so
             return None
-
-    def _refined(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations and multipliers, refined to rounding errors."""
-        accelerations, multipliers = self._solved(force, curvature)
-        last, open_ = np.inf, True
-        for _ in range(REFINEMENTS):
-            missed = force - np.matvec(self._mass, accelerations) + np.vecmat(multipliers, self._jacobian)
-            change, further = self._solved(missed, curvature + np.matvec(self._jacobian, accelerations))
-            size = self.length(change) / or_one(self.length(accelerations))
-            open_ = open_ & (size <= CONTRACTION * last)
-            if not np.any(open_):
-                break
-            chosen = np.asarray(open_)[..., None]
-            accelerations = np.where(chosen, accelerations + change, accelerations)
-            multipliers = np.where(chosen, multipliers + further, multipliers)
-            last, open_ = size, open_ & (size > ROUNDING)
-        return accelerations, multipliers
 
     def _solved(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
         """Return accelerations and multipliers, nan if the system is singular."""
@@ -336,8 +318,8 @@ class DependentConstraints(FactoredConstraints):
         """
         return self._weighted.unweighted(np.matvec(self._basis, self._along(residual)))
 
-    def multipliers(self, force: Vector, curvature: Vector) -> Vector:
-        """Return the multipliers without their part in the null space of J^T.
+    def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
+        """Return accelerations, and multipliers without their part in the null space of J^T.
 
         Parameters
         ----------
@@ -348,12 +330,13 @@ class DependentConstraints(FactoredConstraints):
 
         Returns
         -------
-        ndarray, shape (g,)
+        accelerations : ndarray, shape (n,)
+        multipliers : ndarray, shape (g,)
         """
         along = self._along(curvature) - np.vecmat(self._weighted_force(force, curvature), self._basis)
         found = self._weighted.scale * np.vecmat(along, self._inverse)
         acting = np.linalg.qr(np.matrix_transpose(self._inverse / self._weighted.scale[..., None, :]))[0]
-        return np.matvec(acting, np.vecmat(found, acting))
+        return self.accelerations(force, curvature), np.matvec(acting, np.vecmat(found, acting))
 
     def _weighted_force(self, force: Vector, curvature: Vector) -> Vector:
         """Return L^-1 h. If A is singular, h is changed together with A."""

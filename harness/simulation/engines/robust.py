@@ -236,14 +236,14 @@ class RobustEngine:
     def _unknowns(self, times: Vector, at: Matrices, rank: int) -> tuple[Matrix, Matrix]:
         """Return accelerations and multipliers at several states."""
         factored = factored_constraints(at.mass, at.jacobian, rank)
-        accelerations = factored.accelerations(at.force, at.curvature)
-        force, curvature = at.force.copy(), at.curvature.copy()
+        accelerations, multipliers = factored.unknowns(at.force, at.curvature)
         for collocation in self._collocations:
             inside = (collocation.start < times) & (times < collocation.end)
-            accelerations[inside] = collocation.accelerations(times[inside]).T
-            force[inside] -= np.matvec(at.mass[inside], accelerations[inside])
-            curvature[inside] = 0
-        return accelerations, factored.multipliers(force, curvature)
+            if inside.any():
+                accelerations[inside] = collocation.accelerations(times[inside]).T
+                missed = at.force - np.matvec(at.mass, accelerations)
+                multipliers[inside] = factored.unknowns(missed, np.zeros_like(at.curvature))[1][inside]
+        return accelerations, multipliers
 
     def _as_in_the_program(self, jacobian: Matrix, multipliers: Matrix, forces: Matrix) -> Matrix:
         """Return the multipliers, shape (k, g), that are zero for redundant constraints.

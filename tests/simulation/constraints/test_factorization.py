@@ -28,7 +28,7 @@ def random_system(seed: int, redundant: int):
 def solve(mass, force, jacobian, curvature):
     rank = rank_of(weighted_constraints(mass, jacobian).singular_values())
     factored = factored_constraints(mass, jacobian, rank)
-    return factored.accelerations(force, curvature), factored.multipliers(force, curvature)
+    return factored.unknowns(force, curvature)
 
 
 @RANDOM
@@ -136,7 +136,7 @@ def test_several_states_at_once_are_each_solved_by_itself(redundant):
     mass, force, jacobian, curvature = (np.array(parts) for parts in zip(*alike, strict=True))
     assert len(mass) > 3
     factored = factored_constraints(mass, jacobian, 3)
-    found = zip(factored.accelerations(force, curvature), factored.multipliers(force, curvature), strict=True)
+    found = zip(*factored.unknowns(force, curvature), strict=True)
     for system, (accelerations, multipliers) in zip(alike, found, strict=True):
         expected = solve(*system)
         assert np.allclose(accelerations, expected[0], rtol=1e-9, atol=1e-9)
