@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from confinement import without_notice
+from mpmath import cos, mp, mpf, sin
 from refusing import message_of
 
 from holonom.failures import ErrorKind
@@ -42,6 +43,20 @@ def test_the_final_state_is_one_document(simulate):
     assert final["engine"] == "taylor"
     assert "samples" not in final
     assert final["correction"] is None
+
+
+def test_observed_controls_beyond_double_precision_ended_as_an_internal_error(simulate):
+    """The shoulder's torque is that of inverse dynamics, 2 a'' + b'' cos(a - b) + b'^2 sin(a - b) + 2 g cos(a)."""
+    done = simulate(EXAMPLES / "arm.mac", "--precision", "quadruple", "--until", "1", "--samples", "3", "--json", "-")
+    assert (done.returncode, done.stderr) == (0, "")
+    samples = json.loads(done.stdout)["samples"]
+    with mp.workdps(36):
+        g = mpf("9.81")
+        for row in range(3):
+            t, b, vb, torque = (mpf(samples[name][row]) for name in ("t", "b", "dot(b)", "tau1"))
+            a, va, aa = sin(t) / 2 - 1, cos(t) / 2, -sin(t) / 2
+            ab = va**2 * sin(a - b) - aa * cos(a - b) - g * cos(b)
+            assert abs(2 * aa + ab * cos(a - b) + vb**2 * sin(a - b) + 2 * g * cos(a) - torque) < mpf("1e-31")
 
 
 def test_a_simulation_waits_neither_for_sympy_nor_for_all_of_scipy():
