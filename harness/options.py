@@ -149,7 +149,7 @@ def read(each: Field, value: Any) -> Any:
         The value is not one of the choices, not in the range, no time, or of another type.
     """
     kind, stated = kind_of(each), each.metadata["option"]
-    if value is None:
+    if value is None and (kind is tuple or NoneType in _types(each)):
         return () if kind is tuple else None
     if choices := choices_of(each):
         if str(value) not in choices:
@@ -167,6 +167,8 @@ def read(each: Field, value: Any) -> Any:
         raise _unexpected(each, value, reduce(_or, [name for _, name in expected]))
     if isinstance(value, str):
         return value
+    with suppress(OverflowError):  # an integer beyond every double stays
+        value = kind(value) if kind in (int, float) else value
     if stated.least is not None and not value >= stated.least:
         bound = translatable("%(least)s or more", least=f"{stated.least:g}")
     elif stated.above is not None and not value > stated.above:

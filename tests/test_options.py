@@ -6,6 +6,7 @@ from enum import StrEnum
 from fractions import Fraction
 
 import click
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from refusing import failing
@@ -83,6 +84,7 @@ def test_field_of_request_is_argument_in_python():
     ("given", "failure"),
     [
         ({"color": "green"}, ErrorKind.NOT_A_CHOICE),
+        ({"color": None}, ErrorKind.NOT_A_CHOICE),
         ({"size": 1}, ErrorKind.NOT_IN_RANGE),
         ({"size": "x"}, ErrorKind.NOT_A_CHOICE),
         ({"size": 2.5}, ErrorKind.NOT_A_CHOICE),
@@ -108,3 +110,9 @@ def test_wrong_value_of_option_is_refused(given, failure):
 def test_not_a_number_is_out_of_every_range():
     with failing(ErrorKind.NOT_IN_RANGE):
         Shop().toy(price=float("nan"))
+
+
+def test_numbers_of_numpy_are_read_as_pythons():
+    made = Shop().toy(size=np.int64(3), price=np.float32(0.5))[0]
+    assert (made.size, made.price) == (3, 0.5)
+    assert (type(made.size), type(made.price)) == (int, float)
