@@ -194,12 +194,8 @@ def test_a_pendulum_of_micrometres_ends_with_status_0(holonom_here, tmp_path):
     assert_ends_well("pendulum.mac", "swing_scene", holonom_here, tmp_path)
 
 
-# Of sin(10^6 phi) in servo-constraints, Maxima takes more memory than it may.
-IN_MICROMETRES = [each for each in EXAMPLES if each[0] != "overhead_crane.mac"]
-
-
 @pytest.mark.long
-@pytest.mark.parametrize(("file", "scene"), IN_MICROMETRES)
+@pytest.mark.parametrize(("file", "scene"), EXAMPLES)
 def test_every_example_of_micrometres_ends_with_status_0(file, scene, holonom_here, tmp_path):
     assert_ends_well(file, scene, holonom_here, tmp_path)
 
