@@ -30,6 +30,12 @@
 (defvar *loaded-from* nil "The lists of files that are loaded, the latest first: (files . directory).")
 (defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")
 
+;; GCL 2.7.1, of Debian 13, prints no byte of a symbol's name beyond ASCII.
+(let ((name (string (code-char 184))) (printed #'print-invert-case))
+  (unless (string= (funcall printed (intern name)) name)
+    (defun print-invert-case (x)
+      (if (symbolp x) (maybe-invert-string-case (symbol-name x)) (funcall printed x)))))
+
 (defun note (name table kind)
   (if (maxima-name-p name) (unless (gethash name table) (setf (gethash name table) kind))))
 
