@@ -33,6 +33,7 @@ FELT = 1e-3  # of the largest acceleration at these: the first push that sets a 
 AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
+STATES_AT_ONCE = 4096  # moved states that are evaluated together
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
 Vector = NDArray[np.float64]
@@ -161,7 +162,8 @@ def first_order_changes(
     Parameters
     ----------
     functions : callable
-        From times, shape (k,), and states, shape (2n, k), to values, shape (functions, k).
+        From times, shape (m,), and states, shape (2n, m), to values, shape (functions, m). Here m is a multiple of k,
+        the k states one after the other, each time moved otherwise.
     times : ndarray, shape (k,)
         Times of the states.
     states : ndarray, shape (2n, k)
@@ -175,12 +177,18 @@ def first_order_changes(
         Sums of the sizes of changes. Those that are not finite do not count.
     """
     here, points = as_floats(functions(times, states)), np.concatenate([times[None], states])
+    count, k = points.shape
+    moves = np.abs(as_floats(points))
+    moves[0] = MOVED * np.maximum(moves[0], nominal.time)
+    moves[1:] = MOVED * np.maximum(moves[1:], np.reshape(nominal.state, (count - 1, -1)))
     changes = np.zeros(here.shape)
-    for place, size in enumerate((nominal.time, *nominal.state)):
-        moved = points.copy()
-        moved[place] += MOVED * np.maximum(size, np.abs(as_floats(points[place])))
-        change = np.abs(as_floats(functions(moved[0], moved[1:])) - here) / MOVED
-        changes += np.where(np.isfinite(change), change, 0.0)
+    for places in np.array_split(np.arange(count), min(count, -(-count * k // STATES_AT_ONCE))):
+        moved = np.repeat(points[:, None], len(places), axis=1)  # shape (2n + 1, places, k)
+        moved[places, np.arange(len(places))] += moves[places]
+        columns = moved.reshape(count, -1)
+        values = as_floats(functions(columns[0], columns[1:])).reshape(len(here), len(places), k)
+        change = np.abs(values - here[:, None]) / MOVED
+        changes += np.sum(np.where(np.isfinite(change), change, 0.0), axis=1)
     return changes
 
 

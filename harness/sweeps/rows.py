@@ -245,7 +245,8 @@ class RowMaker:
         """
 
         def at(times: Floats, states: Floats) -> Floats:
-            return quantities_at(np.concatenate([times[None], states, values]))
+            repeated = np.tile(values, states.shape[1] // values.shape[1])
+            return quantities_at(np.concatenate([times[None], states, repeated]))
 
         changes = first_order_changes(at, np.full(states.shape[1], self._start), states, nominal)
         count = len(changes)

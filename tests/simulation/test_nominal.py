@@ -1,0 +1,40 @@
+"""Nominal sizes: what functions change by with them."""
+
+import numpy as np
+import pytest
+
+from holonom.program.precision import read_precision
+from holonom.simulation import nominal
+from holonom.simulation.nominal import Nominal, first_order_changes
+
+
+@pytest.mark.parametrize("at_once", [1, 10, 4096])
+@pytest.mark.parametrize("each", [False, True])
+def test_changes_of_linear_functions_are_sums_of_their_coefficients(at_once, each, monkeypatch):
+    """However many moved states are evaluated together; sizes may be of one motion or of each."""
+    monkeypatch.setattr(nominal, "STATES_AT_ONCE", at_once)
+    draw = np.random.default_rng(1)
+    coefficients, times, states = draw.normal(size=(3, 5)), draw.normal(size=6), draw.normal(size=(4, 6))
+    sizes = Nominal(draw.uniform(0, 2, 6 if each else None), draw.uniform(0, 2, (4, 6) if each else 4))
+    calls = []
+
+    def functions(t, state):
+        calls.append(len(t))
+        return coefficients @ np.concatenate([t[None], state])
+
+    found = first_order_changes(functions, times, states, sizes)
+    state_sizes = sizes.state if each else sizes.state[:, None]
+    reach = np.concatenate([np.maximum(sizes.time, np.abs(times))[None], np.maximum(state_sizes, np.abs(states))])
+    assert found == pytest.approx(np.abs(coefficients) @ reach, rel=1e-9)
+    assert len(calls) == 1 + {1: 5, 10: 3, 4096: 1}[at_once]
+
+
+def test_changes_that_are_not_finite_do_not_count_beyond_double_precision():
+    number = read_precision("quadruple").number
+    times, states = np.array([number("0")]), np.array([[number("1")], [number("2")]])
+
+    def functions(t, state):
+        return np.where(t == 0, np.array([state[0] * 3, state[0] + state[1]]), np.inf)
+
+    found = first_order_changes(functions, times, states, Nominal(1.0, np.ones(2)))
+    assert found[:, 0] == pytest.approx([3.0, 3.0])
