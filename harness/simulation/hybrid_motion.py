@@ -406,7 +406,7 @@ class HybridMotion:
             self._reject(
                 t, translatable("the constraints or the masses jump as %(sign)s changes its sign", sign=sign.of)
             )
-        kick = np.subtract(*(as_floats(mode.momenta(self._inputs(t, state))) for mode in (before, after)))
+        kick = before.momenta_at(t, state) - after.momenta_at(t, state)
         moved = state.copy()
         if np.max(np.abs(kick) * self.nominal.velocities, initial=0.0) > CONTINUOUS * self.nominal.energy(new.mass):
             if self._precision.name != "double":

@@ -180,15 +180,31 @@ class Mode:
         return dict(zip(self.whole.multipliers, work / ways, strict=True))
 
     @cached_property
-    def momenta(self) -> Any:
-        """dL/d dot(q) as a function of the state."""
+    def momentum_program(self) -> Program:
+        """The program of dL/d dot(q)."""
         switching = self.whole.switching
         wanted = {name for name in switching.outputs if name.startswith("momentum[")}
+        key = "momentum program", frozenset(self.pattern.items())
+        return self.whole.once(
+            key, switching, lambda: program_in(self.whole, computing(switching, wanted), self.pattern)
+        )
 
-        def build() -> Evaluation:
-            return evaluation(program_in(self.whole, computing(switching, wanted), self.pattern), self._precision)
+    def momenta_at(self, t: Any, state: Numbers) -> Numbers:
+        """Return dL/d dot(q) at one state.
 
-        return self.whole.once(("momenta", self._precision.name, frozenset(self.pattern.items())), switching, build)
+        Parameters
+        ----------
+        t : number
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
+        momenta = evaluation_once(self.whole, self.momentum_program, self._precision)
+        return as_floats(momenta(Inputs(self.whole, self._precision)(t, state)))
 
     def controls(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the observed controls.

@@ -9,6 +9,8 @@ sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 2
 
     X+ = X- + (F- - F+) dt/dp,    dt/dp = -(s_x X- + s_p)/(s_t + s_x F-).
 
+If the velocities jump there as well, the first X- and F- are changed by the impulse (`impulses`).
+
 X satisfies the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
 """
 
@@ -30,6 +32,7 @@ from .constraints.factorization import factored_constraints
 from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
 from .evaluation import Numbers
+from .impulses import moves_behind_impulse
 from .initial_tangents import ConstraintVariation, initial_tangents
 from .inputs import Inputs, heyoka_inputs
 from .mode import Mode
@@ -369,16 +372,17 @@ class Sensitivities:
     def _switch(self, step: Step) -> None:
         """Jump with the time of a switching."""
         before, after = self._here, self._of(step.mode)
-        t, state = self._time, step.states(np.array([step.start]))[:, 0]
-        if self._nominal.share(state - self._last, state) > CONTINUOUS:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY, detail=translatable("the velocities jump at t = %(time)s", time=f"{t:.10g}")
-            )
+        t, old, state = self._time, self._last, step.states(np.array([step.start]))[:, 0]
+        self._require_same_motion(old)
         surface = self._surface(before.mode, after.mode)
         if surface is not None:
-            jump = before.rates(t, state) - after.rates(t, state)
-            self._moves = self._moves + np.outer(jump, before.delays(surface, t, state, self._moves))
-        self._moves, self._here = after.corrected(t, state, self._moves), after
+            delays = before.delays(surface, t, old, self._moves)
+            moves = np.column_stack([self._moves, before.rates(t, old)])
+            if self._nominal.share(state - old, state) > CONTINUOUS:
+                directions = *self.directions, TIME
+                moves = moves_behind_impulse(before.mode, after.mode, directions, t, (old, state), moves)
+            self._moves = moves[:, :-1] + np.outer(moves[:, -1] - after.rates(t, state), delays)
+        self._state, self._moves, self._here = state, after.corrected(t, state, self._moves), after
 
     def _surface(self, before: Mode, after: Mode) -> _Zero | None:
         """Return the zero between one mode and the next.

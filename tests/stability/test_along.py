@@ -271,3 +271,17 @@ def test_pendulum_with_friction_against_differences_of_motions():
                             ((along[0].basis, moved[:2, 0]), (along[0].basis, moved[2:, 0]))])  # fmt: skip
     found = np.array([[along.response(name)[k] @ start for k in range(5)] for name in names])
     assert found == pytest.approx(moved, abs=1e-7)
+
+
+def test_deviations_jump_with_an_impulse():
+    """A pendulum without gravity turns at w, and at w + a cos(phi(T)) after its support halts at T = 1."""
+    scene = holonom.system("""system : holonomic_system(coordinates = [x, y], controls = [u],
+      kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [(x - u)^2 + y^2 - 1])$
+    s : holonomic_scene(system, control_law = [u = if t < 1 then 2*t else 2], time_span = [0, 3],
+      initial_state = [x = 3/5, y = -4/5, dot(x) = 2 + 12/5, dot(y) = 9/5])$""")
+    along, slope = scene.linearize_along(samples=5), -2 * np.sin(np.arcsin(3 / 5) + 3)
+    for t, phi in zip(along.times, along.transition, strict=True):
+        until, since = min(t, 1), max(t - 1, 0)
+        rate = [slope, 1 + slope] if t > 1 else [0, 1]
+        expected = [[1 + slope * since, until + (1 + slope) * since], rate]
+        assert phi == pytest.approx(np.array(expected), abs=1e-9)
