@@ -10,7 +10,7 @@ Residuals and gradients are SymPy's, of the description alone. Nothing is solved
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -25,12 +25,14 @@ from .described_motion import DescribedMotion
 from .evaluation import Steps
 from .independent import IndependentEquations
 from .irregular_point import IrregularPoint
+from .polynomial_equilibria import count_real_solutions, read_exact
 from .report import CheckResult, Verdict
 from .system import described_system, dotted, exact, gradient
 from .taylor import Taylor
 
 DIGITS = 7  # of results in double precision, in which they have to agree
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
+EXACT_DIGITS = 60  # in which exact values are put into the equations
 ENERGY = sp.Symbol("energy", real=True)
 
 
@@ -38,7 +40,7 @@ class Condition(NamedTuple):
     """A difference that should vanish, with the sizes of its terms."""
 
     what: str
-    difference: Any
+    difference: Any  # None if it could not be computed
     size: Any = 1.0
 
 
@@ -86,6 +88,7 @@ class DescribedEquations:
             for group, symbols in self._groups.items():
                 parts[f"{row}_by_{group}"] = [slope for each in expressions for slope in gradient(each, symbols)]
         self._shapes = {name: len(each) for name, each in parts.items()}
+        self._at_rest = [each.subs(values) for row in ("equation", "constraint") for each in self._rows[row]]
         smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
         self._steps = Steps(smooth)
 
@@ -99,6 +102,24 @@ class DescribedEquations:
         """Indices of multipliers that the scene does not prescribe."""
         given = self.motion.scene.prescribed_reactions
         return [beta for beta, name in enumerate(self.multipliers) if name.name not in given]
+
+    def at_rest(self, controls: Mapping[str, float]) -> list[sp.Expr]:
+        """Return the exact equations of states at rest.
+
+        Parameters
+        ----------
+        controls : mapping of str to float
+            Constant values, exactly.
+
+        Returns
+        -------
+        list of Expr
+            Functions of the coordinates and multipliers that vanish.
+        """
+        moving = [symbol for group in ("v", "a", "du", "ddu") for symbol in self._groups[group]]
+        constant = {sp.Symbol(name, real=True): sp.Rational(value) for name, value in controls.items()}
+        time = {sp.Symbol("t", real=True): sp.Rational(float(self.motion.first_time))}
+        return [each.subs(dict.fromkeys(moving, 0) | constant | time) for each in self._at_rest]
 
     def names(self, group: str) -> list[str]:
         """Return the names of a group of symbols.
@@ -162,7 +183,7 @@ class DescribedEquations:
         return {each: x for name in named for each, x in zip(named[name], scaled[name], strict=True)}
 
 
-def _symbols(names: Sequence[str]) -> tuple[sp.Symbol, ...]:
+def _symbols(names: Iterable[str]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(name, real=True) for name in names)
 
 
@@ -181,12 +202,17 @@ def verify(conditions: Iterator[Condition]) -> CheckResult:
     -------
     CheckResult
     """
+    unchecked = []
     try:
         for what, difference, size in conditions:
-            if not np.all(np.abs(difference) <= 10.0**-DIGITS * np.maximum(np.abs(size), np.finfo(float).tiny)):
+            if difference is None:
+                unchecked.append(what)
+            elif not np.all(np.abs(difference) <= 10.0**-DIGITS * np.maximum(np.abs(size), np.finfo(float).tiny)):
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, f"{what} does not hold")
     except IrregularPoint:
         return CheckResult(Verdict.UNDECIDED, None, None, "an expression has no real value there")
+    if unchecked:
+        return CheckResult(Verdict.UNDECIDED, None, None, f"not checked: {', '.join(unchecked)}")
     return CheckResult(Verdict.AGREES, DIGITS, 1)
 
 
@@ -389,6 +415,14 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
     yield Condition("complete", content["complete"] != (len(found) == content["count"] and all(_of(found, "isolated"))))
     yield Condition("names", _of(found, "name") != [f"e{k}" for k in range(1, len(found) + 1)])
     yield from _conditions_on_turns(equations, content, at_rest)
+    equations_at_rest = equations.at_rest(controls)
+    if content["count"] is not None:
+        count = count_real_solutions(equations_at_rest, _symbols((*q, *reactions)))
+        if count is None:  # of dependent constraints, some multipliers are chosen as zero
+            used = [name for name in reactions if any(each["multipliers"][name] for each in found)]
+            none = dict.fromkeys(_symbols(name for name in reactions if name not in used), 0)
+            count = count_real_solutions([each.subs(none) for each in equations_at_rest], _symbols((*q, *used)))
+        yield Condition("number of solutions", None if count is None else count - content["count"])
     known: list[Vector] = []
     for each in found:
         place = f"{each['name']}: "
@@ -408,6 +442,26 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         size = 1 + np.abs(here["constraint_by_q"]) @ np.abs(position)
         yield Condition(f"{place}constraints", here["constraint"], size)
         yield from _conditions_on_stability(place, equations, here, each)
+        yield from _conditions_on_exact_values(place, equations_at_rest, each)
+
+
+def _conditions_on_exact_values(
+    place: str, equations_at_rest: Sequence[sp.Expr], each: Mapping[str, Any]
+) -> Iterator[Condition]:
+    """Put the exact values into the equations, to many digits."""
+    given = {**each["coordinates"], **each["multipliers"]}
+    exact = {name: read_exact(text) for name, text in each["exact"].items()}
+    yield Condition(f"{place}names of exact values", not given.keys() >= exact.keys())
+    for name, value in exact.items():
+        number = complex("nan") if value is None else complex(value.evalf())
+        yield Condition(f"{place}exact value of {name}", number - given[name], 1 + abs(given[name]))
+    if exact and all(value in exact or not given[value] for value in given):
+        with mp.workdps(EXACT_DIGITS):
+            numbers = {name: mp.mpf(str(sp.re(value.evalf(EXACT_DIGITS)))) for name, value in exact.items()}
+            values = {sp.Symbol(name, real=True): numbers.get(name, mp.zero) for name in given}
+            left = Steps(equations_at_rest).real_at(values)
+        size = 10.0 ** (2 * DIGITS - EXACT_DIGITS) * (1 + max(map(abs, given.values())))
+        yield Condition(f"{place}equations of exact values", np.array(left, dtype=float), size)
 
 
 def _conditions_on_turns(

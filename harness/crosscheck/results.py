@@ -78,7 +78,21 @@ def verify_result(description: Description, content: Content) -> EquationVerdict
         found = CheckResult(Verdict.DISAGREES, None, None, "the description has no such scene")
     else:
         found = VERIFIERS[kind](description, content)
+        if found.verdict is Verdict.AGREES:
+            found = found._replace(detail=_unchecked(kind, content))
     return verdict_on(Place(0, name), Item("result", "", f"result: {kind}"), found)
+
+
+def _unchecked(kind: Publication, content: Content) -> str:
+    """Return what of a document agrees without a check."""
+    match kind:
+        case Publication.EQUILIBRIA:
+            return "not checked: starts, more, singular"
+        case Publication.SERIES if content["multipliers"]:
+            return f"not checked: powers {content['order'] - 1} and {content['order']} of multipliers, radius"
+        case Publication.SERIES:
+            return "not checked: radius"
+    return ""
 
 
 def _verify_linearization(description: Description, content: Content) -> CheckResult:
@@ -112,6 +126,8 @@ def _derivatives(motion: DescribedMotion, content: Content) -> Iterator[Compared
     names = (*content["coordinates"], *content["multipliers"])
     moving = content["sensitivities"]
     directions = {name.partition(", ")[2].rstrip(")") for name in moving}
+    lengths = {len(row) for row in (*moving.values(), *content["coordinates"].values())}
+    yield ComparedValue("order", mp.mpf(max(lengths) - 1), mp.mpf(content["order"]), mp.zero)
     for direction in sorted(directions):
         missing = [name for name in names if derivative_name(name, direction) not in moving]
         yield ComparedValue(f"derivatives by {direction}", mp.mpf(len(missing)), mp.zero, mp.zero)

@@ -84,7 +84,7 @@ def show_verdicts(console: Console, report: "CheckReport") -> None:
             table.add_row(found.number, found.name, styled(found.verdict), _number(found.digits), _number(found.points))
     console.print(table)
     for found in report.verdicts:
-        if found.verdict in ("disagrees", "undecided"):
+        if found.detail:
             console.print(f"{_title(found.number, found.name)}: {found.detail}", soft_wrap=True)
     for left_out in dict.fromkeys(found.left_out for found in report.verdicts if found.left_out):
         numbers = dict.fromkeys(f"({found.number})" for found in report.verdicts if found.left_out == left_out)

@@ -34,18 +34,28 @@ HOOP = """system : holonomic_system(coordinates = [r, z], kinetic_energy = (dot(
 rest : holonomic_scene(system, initial_state = [r = 0, dot(r) = 0, dot(z) = 0], initial_guess = [z = -1],
   time_span = [0, 1])$
 """
+BUCKLED = """system : holonomic_system(coordinates = [x, phi], controls = [u], kinetic_energy = dot(x)^2 + dot(phi)^2,
+  potential_energy = [spring = x^6/6 - u*x^4 + x^3/7 - x/3 + x^2, gravity = -3*cos(phi)])$
+rest : holonomic_scene(system, control_law = [u = 1 + t], initial_state = [x = 0, phi = 0, dot(x) = 0, dot(phi) = 0],
+  time_span = [0, 1])$
+"""
 RESULTS = {
     "linearisation": (PENDULUM, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
     "servo-constraints": (LED, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
     "equilibria": (HOOP, lambda scene: published(Publication.EQUILIBRIA, scene.equilibria().document())),
+    "equations of degree five": (
+        BUCKLED,
+        lambda scene: published(Publication.EQUILIBRIA, scene.equilibria().document()),
+    ),
     "series": (PENDULUM, lambda scene: series_document(scene.series(order=6, sensitivities=["m", "x"]))),
 }
 VERIFIED = {  # entries of each document that a verdict is about
     "linearisation": ("at_rest", "point", "mass", "basis", "A", "B", "C", "D", "eigenvalues", "frequencies", "damping",
                       "modes", "controllable_rank", "observable_rank"),
     "servo-constraints": ("point", "basis", "A", "C", "eigenvalues", "modes"),
+    "equations of degree five": ("count",),
     "equilibria": ("count", "complete", "found"),
-    "series": ("sensitivities",),
+    "series": ("order", "sensitivities"),
 }  # fmt: skip
 ROUNDING = 1e-6  # numbers below are rounding errors; a change in the seventh digit is one, too
 
@@ -60,7 +70,7 @@ def result(request):
 def test_a_true_result_agrees(result):
     description, content, _ = result
     found = verify_result(description, content)
-    assert (found.verdict, found.detail) == (Verdict.AGREES, "")
+    assert found.verdict is Verdict.AGREES
 
 
 def leaves(part, path=()):
@@ -101,6 +111,41 @@ def test_a_wrong_result_disagrees(result, seed):
         part[last] = changed(part[last], draw)
         found = verify_result(description, wrong)
         assert found.verdict is Verdict.DISAGREES, (path, last, part[last])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_wrong_number_of_solutions_disagrees(seed):
+    """Random potentials of degree four in each coordinate, with a claim that leaves out or adds a solution."""
+    draw = random.Random(seed)
+    energy = " + ".join(f"{q}^4/4 + {draw.randint(-9, 9)}*{q}^3/7 - {draw.randint(1, 9)}*{q}^2" for q in "xy")
+    scene = holonom.system(
+        f"""system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2 + dot(y)^2,
+  potential_energy = [spring = {energy} + x*y])$
+rest : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$"""
+    )
+    content = json.loads(json.dumps(published(Publication.EQUILIBRIA, scene.equilibria().document())))
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    for change in (-1, 1):
+        wrong = {**content, "count": content["count"] + change, "complete": False}
+        assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES
+
+
+def test_exact_values_are_read_and_put_into_the_equations():
+    scene = holonom.system(BUCKLED)
+    content = json.loads(json.dumps(published(Publication.EQUILIBRIA, scene.equilibria().document())))
+    exact = content["found"][0]["exact"]
+    assert exact["x"].startswith("CRootOf(")
+    for name, value in (
+        ("x", exact["x"].replace("21*", "22*")),
+        ("x", f"-({exact['x']})"),
+        ("x", repr(content["found"][0]["coordinates"]["x"])),
+        ("x", "__import__('os').getpid()"),
+        ("phi", f"{exact['phi']} + 1/10**20"),
+        ("y", "1"),
+    ):
+        wrong = copy.deepcopy(content)
+        wrong["found"][0]["exact"][name] = value
+        assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES, value
 
 
 @pytest.mark.parametrize(("place", "stated"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
