@@ -88,7 +88,7 @@ def derive(
     metavar="FILE",
     multiple=True,
     type=click.Path(exists=True, dir_okay=False, path_type=Path),
-    help="Also check a JSON result of linearize, equilibria or series. May be repeated.",
+    help="Also check a JSON result of linearize, linearize-along, equilibria or series. May be repeated.",
 )
 @click.option("--allow-undecided", is_flag=True, help="Exit with status 0 if something is undecided.")
 @runs_scenes

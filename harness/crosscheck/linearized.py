@@ -10,7 +10,7 @@ Residuals and gradients are SymPy's, of the description alone. Nothing is solved
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -33,6 +33,7 @@ from .taylor import Taylor
 DIGITS = 7  # of results in double precision, in which they have to agree
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 EXACT_DIGITS = 60  # in which exact values are put into the equations
+SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
 ENERGY = sp.Symbol("energy", real=True)
 
 
@@ -89,8 +90,8 @@ class DescribedEquations:
                 parts[f"{row}_by_{group}"] = [slope for each in expressions for slope in gradient(each, symbols)]
         self._shapes = {name: len(each) for name, each in parts.items()}
         self._at_rest = [each.subs(values) for row in ("equation", "constraint") for each in self._rows[row]]
-        smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
-        self._steps = Steps(smooth)
+        self._smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
+        self._steps = Steps(self._smooth)
 
     @property
     def motion_forces(self) -> tuple[sp.Expr, ...]:
@@ -152,7 +153,35 @@ class DescribedEquations:
         IrregularPoint
             One of them has no real value.
         """
-        numbers = self._steps.real_at({sp.Symbol(name, real=True): mp.mpf(x) for name, x in point.items()})
+        return self._arranged(self._steps.real_at({sp.Symbol(name, real=True): mp.mpf(x) for name, x in point.items()}))
+
+    def quickly_at(self, point: Mapping[str, float]) -> dict[str, Matrix]:
+        """Evaluate residuals and gradients in double precision.
+
+        Parameters
+        ----------
+        point : mapping of str to float
+            Values of all names.
+
+        Returns
+        -------
+        dict of str to ndarray
+        """
+        names, function = self._function
+        return self._arranged(function(*(point[name] for name in names)))
+
+    @cached_property
+    def _function(self) -> tuple[list[str], Callable[..., list[float]]]:
+        symbols = sorted(set().union(*(each.free_symbols for each in self._smooth)), key=str)
+        return list(map(str, symbols)), sp.lambdify(symbols, self._smooth, "scipy", cse=True)
+
+    @property
+    def switches(self) -> bool:
+        """Whether signs change the equations or the laws."""
+        laws = map(exact, self.motion.scene.control_law.values())
+        return any(each.has(*SWITCHING) for each in (*self._smooth, *laws))
+
+    def _arranged(self, numbers: Sequence[Any]) -> dict[str, Matrix]:
         ends = np.cumsum(list(self._shapes.values()))[:-1]
         found = dict(zip(self._shapes, np.split(np.array(numbers, dtype=float), ends), strict=True))
         for row, expressions in self._rows.items():
@@ -233,6 +262,30 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     ------
     Condition
     """
+    yield from conditions_on_rates(equations, content)
+    N, mass = (
+        np.array(content["basis"]).reshape(len(content["coordinates"]), -1),
+        equations.at(content["point"])["mass"],
+    )
+    yield Condition("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
+    yield from _conditions_on_modes(content, N, mass)
+    yield from _conditions_on_ranks(content)
+
+
+def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+    """Yield the conditions on the state, the basis and the matrices of a linear system.
+
+    Parameters
+    ----------
+    equations : DescribedEquations
+        The reference.
+    content : mapping
+        Entries of a document of `linearize`.
+
+    Yields
+    ------
+    Condition
+    """
     q, v, a, u = (equations.names(group) for group in ("q", "v", "a", "u"))
     reactions, point, outputs = equations.names("lambda"), content["point"], content["outputs"]
     yield Condition("coordinates", content["coordinates"] != q)
@@ -245,7 +298,6 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     columns = {name: np.hstack([content[name[0]], *_parts(content, name[1])]) for name in ("AB", "CD")}
     rates, rows = columns["AB"], columns["CD"]
     n, m, width = len(q), N.shape[1], rows.shape[1]
-    yield Condition("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
     yield Condition("number of states", rates.shape != (2 * m, width) or len(rows) != len(outputs))
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
@@ -279,8 +331,6 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     own, size = _deviation(here, "output", known | {"a": accelerations})
     given = rows[2 * n + len(solved) :]
     yield Condition("outputs of the scene in C and D", own - given, size + np.abs(given))
-    yield from _conditions_on_modes(content, N, mass)
-    yield from _conditions_on_ranks(content)
 
 
 def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:

@@ -1,4 +1,4 @@
-"""Verdicts on results of `linearize`, `equilibria` and `series` in JSON documents.
+"""Verdicts on results of `linearize`, `linearize-along`, `equilibria` and `series` in JSON documents.
 
 Derivatives of power series by p are checked without differentiation: the series q + e dq/dp must satisfy the equations
 for p + e to first order, which a central difference shows.
@@ -24,6 +24,7 @@ from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .law import Law
 from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
+from .linearized_along import conditions_on_linearized_motion
 from .motion_series import digits_of, values_of_equations
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
@@ -34,7 +35,7 @@ Content = Mapping[str, Any]
 
 
 def read_result(file: Path) -> Content:
-    """Read a JSON document of `linearize`, `equilibria` or `series`.
+    """Read a JSON document of `linearize`, `linearize-along`, `equilibria` or `series`.
 
     Parameters
     ----------
@@ -86,6 +87,8 @@ def verify_result(description: Description, content: Content) -> EquationVerdict
 def _unchecked(kind: Publication, content: Content) -> str:
     """Return what of a document agrees without a check."""
     match kind:
+        case Publication.LINEARIZED_ALONG:
+            return "not checked: error" + (", stability of free deviations" if content["free"] else "")
         case Publication.EQUILIBRIA:
             return "not checked: starts, more, singular"
         case Publication.SERIES if content["multipliers"]:
@@ -97,6 +100,10 @@ def _unchecked(kind: Publication, content: Content) -> str:
 
 def _verify_linearization(description: Description, content: Content) -> CheckResult:
     return verify(conditions_on_linearization(DescribedEquations(description, content["scene"]), content))
+
+
+def _verify_linearized_motion(description: Description, content: Content) -> CheckResult:
+    return verify(conditions_on_linearized_motion(DescribedEquations(description, content["scene"]), content))
 
 
 def _verify_equilibria(description: Description, content: Content) -> CheckResult:
@@ -117,6 +124,7 @@ def _verify_derivatives(description: Description, content: Content) -> CheckResu
 
 VERIFIERS: Mapping[Publication, Callable[[Description, Content], CheckResult]] = {
     Publication.LINEARIZED: _verify_linearization,
+    Publication.LINEARIZED_ALONG: _verify_linearized_motion,
     Publication.EQUILIBRIA: _verify_equilibria,
     Publication.SERIES: _verify_derivatives,
 }

@@ -194,6 +194,7 @@ class LinearizedMotion(Shown):
             "scene": self.scene,
             "times": self.times.tolist(),
             **{name: list(getattr(self.at[0], name)) for name in ("coordinates", "controls", "outputs")},
+            "points": [dict(each.point) for each in self.at],
             **{name: [getattr(each, name).tolist() for each in self.at] for name in ("basis", "A", "C")},
             **{
                 name: {rate: [getattr(each, name)[rate].tolist() for each in self.at] for rate in self.at[0].B}

@@ -1,4 +1,4 @@
-"""Wrong results of linearize, equilibria and series, drawn at random, are found."""
+"""Wrong results of linearize, linearize-along, equilibria and series, drawn at random, are found."""
 
 import copy
 import json
@@ -39,7 +39,23 @@ BUCKLED = """system : holonomic_system(coordinates = [x, phi], controls = [u], k
 rest : holonomic_scene(system, control_law = [u = 1 + t], initial_state = [x = 0, phi = 0, dot(x) = 0, dot(phi) = 0],
   time_span = [0, 1])$
 """
+FORCED = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+  forces = [spring = [-(5 + 2*cos(%pi*t + 1))*x]])$
+mathieu : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], nominal = [x = 1], time_span = [0, 2])$"""
+FREE = """system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [x^2 + y^2 - u^2])$
+thrown : holonomic_scene(system, control_law = [u = sqrt((1 + t)^2 + (1 - 5*t^2)^2)],
+  initial_state = [x = 1, y = 1, dot(x) = 1, dot(y) = 0], time_span = [0, 1])$"""
+
+
+def along(scene):
+    return published(Publication.LINEARIZED_ALONG, scene.linearize_along(samples=3).document())
+
+
 RESULTS = {
+    "linearisation along a motion": (PENDULUM, along),
+    "period of a forced motion": (FORCED, along),
+    "deviations from a free motion": (FREE, along),
     "linearisation": (PENDULUM, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
     "servo-constraints": (LED, lambda scene: published(Publication.LINEARIZED, scene.linearize(at="3/10").document())),
     "equilibria": (HOOP, lambda scene: published(Publication.EQUILIBRIA, scene.equilibria().document())),
@@ -50,6 +66,9 @@ RESULTS = {
     "series": (PENDULUM, lambda scene: series_document(scene.series(order=6, sensitivities=["m", "x"]))),
 }
 VERIFIED = {  # entries of each document that a verdict is about
+    "linearisation along a motion": ("times", "points", "basis", "A", "B", "C", "D", "transition"),
+    "period of a forced motion": ("transition", "floquet"),
+    "deviations from a free motion": ("transition", "free"),
     "linearisation": ("at_rest", "point", "mass", "basis", "A", "B", "C", "D", "eigenvalues", "frequencies", "damping",
                       "modes", "controllable_rank", "observable_rank"),
     "servo-constraints": ("point", "basis", "A", "C", "eigenvalues", "modes"),
@@ -79,7 +98,8 @@ def leaves(part, path=()):
         for key, each in part.items() if isinstance(part, dict) else enumerate(part):
             yield from leaves(each, (*path, key))
     elif isinstance(part, bool | int) or (
-        (not isinstance(part, str) or path[0] == "sensitivities")
+        part is not None
+        and (not isinstance(part, str) or path[0] == "sensitivities")
         and (not Fraction(part) or abs(Fraction(part)) > ROUNDING)
     ):
         yield path
@@ -155,6 +175,14 @@ def test_a_wrong_stability_disagrees(place, stated):
     content = published(Publication.EQUILIBRIA, scene.equilibria().document())
     assert [each["stability"] for each in content["found"]] == ["stable", "unstable", "unstable", "stable"]
     content["found"][place]["stability"] = stated
+    assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
+
+
+def test_deviations_through_switchings_are_not_checked():
+    scene = holonom.system(FORCED.replace("cos(%pi*t + 1)", "signum(sin(%pi*t + 1))"))
+    content = json.loads(json.dumps(along(scene)))
+    assert verify_result(scene.description, content).verdict is Verdict.UNDECIDED
+    content["A"][1][1][0] *= 2
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 
