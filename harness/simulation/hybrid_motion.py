@@ -314,7 +314,7 @@ class HybridMotion:
         if self._signs[names[0]].by is not DependsOn.REACTION:
             pattern = self._with_reactions(pattern, t, state)
         before, after = self.mode, self._mode_of(pattern, self._started_at(t, state))
-        state = before.settled(t, state)  # drift is no impulse
+        state = before.settled(t, state)  # without the drift, which takes no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
         after.engine.restart(t, moved)
         self._left |= dict.fromkeys(left, t)
