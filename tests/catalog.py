@@ -7,7 +7,7 @@ wrong in those. A message that is new has no translation yet; the translation of
 import io
 import re
 import tomllib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import IO, Any
@@ -80,9 +80,8 @@ def template_text(catalog: Catalog) -> str:
 def read_catalog(language: str, name: str = DOMAIN) -> Catalog:
     """A catalog of a language as it is; empty where there is none."""
     file = catalog_file(language, name)
-    return (
-        read_catalog_file(file, language) if file.exists() else Catalog(locale=language, project=name, charset="utf-8")
-    )
+    empty = Catalog(locale=language, project=name, charset="utf-8")
+    return read_catalog_file(file, language) if file.exists() else empty
 
 
 def read_catalog_file(file: Path, language: str | None = None) -> Catalog:
@@ -150,14 +149,11 @@ def _sources() -> Iterator[tuple[Path, Any, Mapping[str, Any]]]:
 
 def _place(file: Path) -> str:
     """A file as it is named from the top of the repository."""
-    return (
-        f"harness/{file.relative_to(PACKAGE)}"
-        if file.is_relative_to(PACKAGE)
-        else str(file.relative_to(PACKAGE.parent))
-    )
+    inside = file.is_relative_to(PACKAGE)
+    return f"harness/{file.relative_to(PACKAGE)}" if inside else str(file.relative_to(PACKAGE.parent))
 
 
-def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
+def _in_maxima(file: IO[bytes], *others: Any, **options: Any) -> Found:
     """Titles, sources, names of equations, notes, reasons and errors in a Maxima file."""
     text = re.sub(r"/\*.*?\*/", "", file.read().decode(), flags=re.DOTALL).replace("\\\n", "")
     messages = [next(filter(None, found.groups()), "") for found in IN_MAXIMA.finditer(text)]
@@ -168,9 +164,7 @@ def _in_maxima(file: IO[bytes], keywords: Collection[str], tags: Collection[str]
             yield 0, "gettext", re.sub(r"\s+", " ", message.replace('\\"', '"')), []
 
 
-def _in_markdown(
-    file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]
-) -> Found:
+def _in_markdown(file: IO[bytes], keywords: Any, tags: Any, options: Mapping[str, Any]) -> Found:
     """The messages in the pieces of templates within a page of the book or the manual."""
     text = file.read().decode()
     head = {} if (begin := text.split(FENCE, 2))[0] else yaml.safe_load(begin[1])
@@ -182,17 +176,10 @@ def _in_markdown(
 
 def page_templates(folder: Path) -> dict[str, Catalog]:
     """The messages of the pages of the book and the manual, by the names of their catalogs."""
-    package = PACKAGE / "companion"
+    package, left_out = PACKAGE / "companion", ["reference", "chapters", "templates"]
+    settings = {"exclude_patterns": left_out, "suppress_warnings": ["toc", "myst"]}
     with patch_docutils(package), docutils_namespace():
-        Sphinx(
-            package,
-            package,
-            folder,
-            folder / "doctrees",
-            "gettext",
-            {"exclude_patterns": ["reference", "chapters", "templates"], "suppress_warnings": ["toc", "myst"]},
-            status=None,
-        ).build()
+        Sphinx(package, package, folder, folder / "doctrees", "gettext", settings, status=None).build()
     return {name: _to_translate(folder / f"{name}.pot") for name in TRANSLATED}
 
 
@@ -201,26 +188,25 @@ def _to_translate(file: Path) -> Catalog:
     catalog = Catalog(project=DOMAIN, charset="utf-8")
     for message in read_catalog_file(file):
         if message.id and not ALIKE.fullmatch(message.id):
-            catalog.add(
-                message.id, None, [(name, None) for name in dict.fromkeys(name for name, _ in message.locations)]
-            )
+            catalog.add(message.id, None, [(name, None) for name in dict(message.locations)])
     return catalog
 
 
-def _in_toml(file: IO[bytes], keywords: Collection[str], tags: Collection[str], options: Mapping[str, Any]) -> Found:
+def _in_toml(file: IO[bytes], *others: Any, **options: Any) -> Found:
     """What readers see of the data of the companion."""
-    parts = [tomllib.load(file)]
-    for part in parts:
-        parts += [each for each in part.values() if isinstance(each, dict)]
-        parts += [
-            each for found in part.values() if isinstance(found, list) for each in found if isinstance(each, dict)
-        ]
-        yield from ((0, "gettext", text, []) for key, text in part.items() if key in SHOWN_IN_TOML)
+    yield from ((0, "gettext", text, []) for text in _shown_in(tomllib.load(file)))
+
+
+def _shown_in(part: Any, key: str = "") -> Iterator[str]:
+    if key in SHOWN_IN_TOML:
+        yield part
+    for name, each in part.items() if isinstance(part, dict) else ():
+        yield from _shown_in(each, name)
+    for each in part if isinstance(part, list) else ():
+        yield from _shown_in(each)
 
 
 if __name__ == "__main__":
     update()
-    for language in LANGUAGES:
-        if language != ENGLISH:
-            for file in sorted(catalog_file(language).parent.glob("*.po")):
-                print(*(f"{file.name}: {fault}" for fault in faults(read_catalog_file(file, language))), sep="\n")
+    for file in sorted(LOCALE.rglob("*.po")):
+        print(*(f"{file.name}: {fault}" for fault in faults(read_catalog_file(file))), sep="\n")

@@ -105,7 +105,6 @@ ALLOWED = {
         "harness/failures.py": "the same",
         "harness/program/identifiers.py": "the same",
         "harness/figures/style.py": "scripts of languages, Greek letters",
-        "harness/companion/fonts.py": "slanted letters",
         "harness/typeset/": "Latin and Greek letters",
         "maxima/paper/": "letters of indices",
         "maxima/record/description.lisp": "a variable",

@@ -19,7 +19,6 @@ EXTRAS = (
     "latex2mathml",
     "matplotlib",
     "heyoka",
-    "ziamath",
     "pypdf",
     "sphinx",
     "myst_parser",

@@ -8,7 +8,7 @@ from ..crosscheck.report import OPINION, EquationVerdict, Verdict
 from ..errata import PrintedEquation
 from ..language import translatable
 from ..record import Equation, Scene
-from .runs import Derived, FileAnswers
+from .runs import Derived
 
 
 @dataclass(frozen=True)
@@ -56,8 +56,7 @@ def derivation_cards(
     list of Card
         Cards in the order of the first record.
     """
-    instances = [_derivation_instances(each) for each in derivations]
-    return _cards(numbers, instances, tuple(printed), _is_controlled(derivations[0]))
+    return _cards(numbers, derivations[0], [_derivation_instances(each) for each in derivations], printed)
 
 
 def scene_cards(
@@ -86,8 +85,7 @@ def scene_cards(
     list of Card
         Cards in the order of the records.
     """
-    instances = [_scene_instances(derived, name) for derived, name in scenes]
-    return _cards(numbers, instances, tuple(printed), _is_controlled(scenes[0][0]), prefix)
+    return _cards(numbers, scenes[0][0], [_scene_instances(*each) for each in scenes], printed, prefix)
 
 
 def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
@@ -106,13 +104,13 @@ def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
     return {card.anchor: card for card in cards}
 
 
-def cards_of_scene(found: FileAnswers, numbers: Sequence[str], scene: str) -> list[Card]:
+def cards_of_scene(derived: Derived, numbers: Sequence[str], scene: str) -> list[Card]:
     """Return cards of a scene's equations, none for prescribed reactions.
 
     Parameters
     ----------
-    found : FileAnswers
-        Answers about the scene's file.
+    derived : Derived
+        Derivation of the scene's file.
     numbers : sequence of str
         Numbers of the equations.
     scene : str
@@ -123,8 +121,8 @@ def cards_of_scene(found: FileAnswers, numbers: Sequence[str], scene: str) -> li
     list of Card
         Cards in the order of the record.
     """
-    known = scene in {each.name for each in found.record.scenes}
-    return scene_cards(numbers, [(found.derived, scene)], (), scene) if known else []
+    known = scene in {each.name for each in derived.record.scenes}
+    return scene_cards(numbers, [(derived, scene)], (), scene) if known else []
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
@@ -143,7 +141,7 @@ def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
         Card of the equation.
     """
     found = next(each for each in printed if each.name == name)
-    return Card(anchor("", found), found.number, found.name, "", True, (found,), ())
+    return Card(*anchors([found]), found.number, found.name, "", True, (found,), ())
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
@@ -221,30 +219,8 @@ def missing(derived: Derived) -> list[EquationVerdict]:
     return [found for found in derived.report.verdicts if not found.is_recorded and found.verdict is Verdict.DISAGREES]
 
 
-def anchor(prefix: str, equation: Equation | PrintedEquation, taken: Iterable[str] = ()) -> str:
-    """Return the anchor of an equation: its number if that is unique, else its name.
-
-    Parameters
-    ----------
-    prefix : str
-        Beginning of the anchors.
-    equation : Equation or PrintedEquation
-        Equation on the page.
-    taken : iterable of str
-        Anchors of other equations.
-
-    Returns
-    -------
-    str
-        Anchor.
-    """
-    short = "-".join(filter(None, [prefix, "eq", equation.number]))
-    named = f"{short}-{re.sub(r'[^a-z0-9]+', '-', equation.name.lower()).strip('-')}"
-    return named if not equation.number or short in taken else short
-
-
 def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -> list[str]:
-    """Anchors of equations on one page, all different.
+    """Return anchors of equations on one page, numbers if they are unique, else with the names.
 
     Parameters
     ----------
@@ -260,70 +236,59 @@ def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -
     """
     found: list[str] = []
     for each in equations:
-        found.append(anchor(prefix, each, found))
+        short = "-".join(filter(None, [prefix, "eq", each.number]))
+        named = f"{short}-{re.sub(r'[^a-z0-9]+', '-', each.name.lower()).strip('-')}"
+        found.append(named if not each.number or short in found else short)
     return found
 
 
 def _cards(
     numbers: Sequence[str],
+    first: Derived,
     instances: Sequence[Sequence[Instance]],
-    printed: tuple[PrintedEquation, ...],
-    controlled: bool,
+    printed: Iterable[PrintedEquation],
     prefix: str = "",
 ) -> list[Card]:
-    equations = _distinct(shown.equation for shown in instances[0] if shown.equation.number in numbers)
+    """Return the cards of the first system's equations, with their instances in all systems."""
+    equations = {each.equation.id: each.equation for each in instances[0] if each.equation.number in numbers}
+    known, controlled = tuple(printed), bool(first.record.system.controls)
     return [
         Card(
-            anchor=place,
-            number=equation.number,
-            name=equation.name,
-            id=equation.id,
-            controlled=controlled,
-            printed=tuple(each for each in printed if _same(each, equation)),
-            instances=tuple(each for group in instances for each in group if each.equation.id == equation.id),
+            place,
+            each.number,
+            each.name,
+            each.id,
+            controlled,
+            tuple(one for one in known if (one.number, one.name) == (each.number, each.name)),
+            tuple(one for group in instances for one in group if one.equation.id == each.id),
         )
-        for place, equation in zip(anchors(equations, prefix), equations, strict=True)
+        for place, each in zip(anchors(equations.values(), prefix), equations.values(), strict=True)
     ]
-
-
-def _is_controlled(derived: Derived) -> bool:
-    return bool(derived.record.system.controls)
-
-
-def _distinct(equations: Iterable[Equation]) -> list[Equation]:
-    return list({equation.id: equation for equation in equations}.values())
-
-
-def _same(one: PrintedEquation, other: Equation) -> bool:
-    """Return True if a derived equation has the number and the name of a printed one."""
-    return (one.number, one.name) == (other.number, other.name)
 
 
 def _derivation_instances(derived: Derived) -> list[Instance]:
     """Return the equations of all derivations, those with most effects first."""
-    record = derived.record
-    report = [found for found in derived.report.verdicts if found.scene is None]
+    record, several = derived.record, len(derived.record.derivations) > 1
     parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
+    title = translatable(record.system.title)
     return [
         Instance(
-            record.system.title if len(parts) == 1 else _with_effects(record.system.title, derivation.effects),
+            translatable("%(system)s, with %(effects)s", system=title, effects=", ".join(derivation.effects))
+            if several
+            else title,
             equation,
-            tuple(found for found in report if found.derivation == place and _speaks_of(found, equation)),
+            tuple(
+                found
+                for found in derived.report.verdicts
+                if (found.scene, found.derivation) == (None, place)
+                and equation.id in (found.id, "lagrange_equations" if found.id == OPINION.id else "")
+            ),
         )
         for place, derivation in parts
         for equation in derivation.equations
     ]
 
 
-def _with_effects(title: str, effects: Iterable[str]) -> str:
-    return translatable("%(system)s, with %(effects)s", system=translatable(title), effects=", ".join(effects))
-
-
 def _scene_instances(derived: Derived, name: str) -> list[Instance]:
     scene = scene_named(derived, name)
     return [Instance(scene.title, equation, verdicts_on(derived, equation, name)) for equation in scene.equations]
-
-
-def _speaks_of(found: EquationVerdict, equation: Equation) -> bool:
-    """Return True if a verdict is about an equation."""
-    return found.id == equation.id or (found.id, equation.id) == (OPINION.id, "lagrange_equations")

@@ -32,40 +32,26 @@ html_static_path = ["static"]
 html_css_files = ["holonom.css"]
 html_copy_source = html_show_sphinx = html_show_copyright = False
 templates_path = ["sidebar"]
-html_sidebars = {
-    "**": [
-        "sidebar/brand.html",
-        "sidebar/search.html",
-        "sidebar/scroll-start.html",
-        "sidebar/navigation.html",
-        "language.html",
-        "sidebar/scroll-end.html",
-    ]
-}
+BARS = [f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation", "scroll-end")]
+html_sidebars = {"**": [*BARS[:-1], "language.html", BARS[-1]]}
 SERIF = '"Iowan Old Style", "Palatino Linotype", Palatino, "URW Palladio L", "P052", "Book Antiqua", Georgia, serif'
-
-
-def _colours(paper: str, leaf: str, ink: str, faint: str, rule: str, link: str, accent: str) -> dict[str, str]:
-    """Return the colours of our parts and those of the theme that they belong to."""
-    return {
-        **{"paper": paper, "leaf": leaf, "ink": ink, "faint": faint, "rule": rule, "link": link, "accent": accent},
-        "color-background-primary": paper,
-        "color-background-secondary": leaf,
-        "color-foreground-primary": ink,
-        "color-foreground-secondary": faint,
-        "color-foreground-muted": faint,
-        "color-background-border": rule,
-        "color-admonition-title": accent,
-        "color-admonition-title-background": leaf,
-        "color-brand-primary": accent,
-        "color-brand-content": link,
-    }
-
-
-LIGHT = _colours("#fdfcf9", "#f5f2ea", "#23201b", "#655e52", "#ddd6c8", "#1d5687", "#8c3b1d")
-DARK = _colours("#17181b", "#202226", "#e3dfd6", "#a8a296", "#3a3c42", "#8fbfe8", "#e5a07f")
+THEME = {  # what the theme takes our colours for
+    "font-stack": SERIF,
+    "color-background-primary": "var(--paper)",
+    "color-background-secondary": "var(--leaf)",
+    "color-foreground-primary": "var(--ink)",
+    "color-foreground-secondary": "var(--faint)",
+    "color-foreground-muted": "var(--faint)",
+    "color-background-border": "var(--rule)",
+    "color-admonition-title": "var(--accent)",
+    "color-admonition-title-background": "var(--leaf)",
+    "color-brand-primary": "var(--accent)",
+    "color-brand-content": "var(--link)",
+}
+NAMES = ("paper", "leaf", "ink", "faint", "rule", "link", "accent", "good", "good-leaf", "bad", "bad-leaf")
+LIGHT = "#fdfcf9 #f5f2ea #23201b #655e52 #ddd6c8 #1d5687 #8c3b1d #1f6b45 #e6f2ea #a52a1c #fbeae6"
+DARK = "#17181b #202226 #e3dfd6 #a8a296 #3a3c42 #8fbfe8 #e5a07f #86d1a6 #1b2c23 #f29a8a #351f1b"
 html_theme_options = {
-    "light_css_variables": LIGHT
-    | {"good": "#1f6b45", "good-leaf": "#e6f2ea", "bad": "#a52a1c", "bad-leaf": "#fbeae6", "font-stack": SERIF},
-    "dark_css_variables": DARK | {"good": "#86d1a6", "good-leaf": "#1b2c23", "bad": "#f29a8a", "bad-leaf": "#351f1b"},
+    f"{name}_css_variables": THEME | dict(zip(NAMES, colours.split(), strict=True))
+    for name, colours in (("light", LIGHT), ("dark", DARK))
 }

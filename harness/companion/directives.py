@@ -8,7 +8,6 @@ chapter, of which the first paragraph is the text for who cannot see it and the 
 with its number; Sphinx's ``numref`` would read all pages for every build.
 """
 
-import logging
 from gettext import NullTranslations
 from pathlib import Path
 from typing import Any
@@ -31,7 +30,6 @@ from ..typeset.mathml import inline_mathml, mathml
 from .chapter import chapters_of_the_paper
 from .chapters import EXAMPLES
 from .finish import EQUATION, with_columns, with_equations
-from .fonts import mathematics_font
 from .runs import Run
 from .sessions import answers_of
 from .shelf import Shelf
@@ -44,15 +42,9 @@ PROMPT = "holonom_prompt"  # the example and the statements of a page, among the
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".results"  # the folder of results that a later build takes
 FILES = "_runs"  # the folder of results of runs, in the folder of the pages
-THEME = {  # texts of the theme, which Sphinx's own catalogs do not have
-    translatable("Skip to content"),
-    translatable("Back to top"),
-    translatable("On this page"),
-    translatable("Next"),
-    translatable("Previous"),
-    translatable("Home"),
-    translatable("Made with "),
-}
+# Texts of the theme, which Sphinx's own catalogs do not have.
+THEME = translatable("Skip to content"), translatable("Back to top"), translatable("On this page")
+THEME += translatable("Next"), translatable("Previous"), translatable("Home"), translatable("Made with ")
 
 
 class Show(SphinxDirective):
@@ -61,7 +53,7 @@ class Show(SphinxDirective):
     optional_arguments, final_argument_whitespace, has_content = 1, True, True
 
     def run(self) -> list[nodes.Node]:
-        """Return the HTML, and record the places of its equations.
+        """Return the HTML, and label its equations.
 
         Returns
         -------
@@ -70,7 +62,8 @@ class Show(SphinxDirective):
         """
         template = "\n".join(self.content) or f"{{{{ {self.arguments[0]} }}}}"
         html = _rendered(self.env, template)
-        _equations(self.env).setdefault(self.env.docname, []).extend(EQUATION.findall(html))
+        for number in EQUATION.findall(html):
+            self.env.domains.standard_domain.anonlabels.setdefault(f"eq-{number}", (self.env.docname, f"eq-{number}"))
         return [_html(html)]
 
 
@@ -128,12 +121,10 @@ class Session(SphinxDirective):
         asked = (*known, *(each.rstrip(";$") for each in self.content))
         self.env.temp_data[PROMPT] = example, asked
         answers = shelf.result(Run(answers_of, (example, asked)))[len(known) :]
-        silent = [each.endswith("$") for each in self.content]
+        numbered = enumerate(zip(self.content, answers, strict=True), len(known) + 1)
         lines = [
-            f"(%i{place}) {statement}" + ("" if quiet else f"\n(%o{place}) {answer}")
-            for place, (statement, answer, quiet) in enumerate(
-                zip(self.content, answers, silent, strict=True), len(known) + 1
-            )
+            f"(%i{place}) {each}" + ("" if each.endswith("$") else f"\n(%o{place}) {answer}")
+            for place, (each, answer) in numbered
         ]
         text = "\n".join(lines)
         return [nodes.literal_block(text, text, language="text", classes=["session"])]
@@ -268,13 +259,6 @@ def _shelf_of(app: Sphinx) -> Shelf:
     return app.holonom_shelf
 
 
-def _equations(env: BuildEnvironment) -> dict[str, list[str]]:
-    """Return the numbers of the equations that have cards, by page."""
-    if not hasattr(env, "holonom_equations"):
-        env.holonom_equations = {}
-    return env.holonom_equations
-
-
 def _up(name: str) -> str:
     """Return the way from a page to the root."""
     return "../" * name.count("/")
@@ -309,11 +293,6 @@ def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[
     return [] if same else [name for name in env.found_docs if shelf.chapter(name).runs]
 
 
-def _purge(app: Sphinx, env: BuildEnvironment, name: str) -> None:
-    """Forget the equations of a page."""
-    _equations(env).pop(name, None)
-
-
 def _chapter_with_number(
     app: Sphinx, env: BuildEnvironment, node: addnodes.pending_xref, content: nodes.TextElement
 ) -> nodes.reference | None:
@@ -331,31 +310,17 @@ def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any],
     context["translations"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
     if "body" in context and app.builder.name == "html":
         body = context["body"].replace('="figures/', f'="{_up(name)}{FILES}/')
-        context["body"] = with_columns(with_equations(body, _places_from(app, name)))
+        context["body"] = with_columns(with_equations(body, _places_from(app, name, body)))
 
 
-def _places_from(app: Sphinx, name: str) -> dict[str, str]:
-    """Return the link to each equation from a page."""
-    found = _equations(app.env)
-    order = [each for each in app.env.toctree_includes.get(f"{BOOK}/index", ()) if each in found]
-    places: dict[str, str] = {}
-    for page in [name, *order] if name in found else order:
-        uri = "" if page == name else app.builder.get_relative_uri(name, page)
-        for number in found[page]:
-            places.setdefault(number, f"{uri}#eq-{number}")
-    return places
-
-
-def _put_font(app: Sphinx) -> None:
-    """Copy the font of formulas to the folder of the pages."""
-    files = Path(app.outdir) / FILES
-    if (files / "mathematics.txt").exists():
-        return
-    logging.getLogger("fontTools").setLevel(logging.WARNING)
-    font, notice = mathematics_font()
-    files.mkdir(parents=True, exist_ok=True)
-    (files / "mathematics.woff").write_bytes(font)
-    (files / "mathematics.txt").write_text(notice, encoding="utf-8")
+def _places_from(app: Sphinx, name: str, body: str) -> dict[str, str]:
+    """Return the link to each equation from a page, to its own first."""
+    others = {
+        label.removeprefix("eq-"): f"{app.builder.get_relative_uri(name, page)}#{label}"
+        for label, (page, _) in app.env.domains.standard_domain.anonlabels.items()
+        if label.startswith("eq-") and page.startswith(f"{BOOK}/")
+    }
+    return others | {number: f"#eq-{number}" for number in EQUATION.findall(body)}
 
 
 def _language_of(app: Sphinx) -> str:
@@ -363,55 +328,18 @@ def _language_of(app: Sphinx) -> str:
     return (app.config.language or ENGLISH).partition("_")[0]
 
 
-class ThemeTranslations(NullTranslations):
-    """Texts of the theme in the language of the pages."""
-
-    def gettext(self, message: str) -> str:
-        """Return a text of the theme.
-
-        Parameters
-        ----------
-        message : str
-            English text.
-
-        Returns
-        -------
-        str
-            Any other text is returned as it is.
-        """
-        return gettext(message) if message in THEME else message
-
-
 def _compile_catalogs(app: Sphinx, config: Config) -> None:
     """Make the catalogs ready for Sphinx, whose Chinese is called zh_CN."""
     language = _language_of(app)
-    app.translator.add_fallback(ThemeTranslations())
+    theme = NullTranslations()
+    theme.gettext = gettext
+    app.translator.add_fallback(theme)
     config.locale_dirs = [str(Path(app.doctreedir) / "locale")]
     target = Path(config.locale_dirs[0], config.language, "LC_MESSAGES")
     target.mkdir(parents=True, exist_ok=True)
     for file in catalog_file(language).parent.glob("*.po"):
         with file.open("rb") as text, (target / f"{file.stem}.mo").open("wb") as compiled:
             write_mo(compiled, read_po(text, locale=language))
-
-
-DIRECTIVES = {
-    "show": Show,
-    "when": When,
-    "session": Session,
-    "run-figure": RunFigure,
-    "exercise": Exercise,
-    "answer": Answer,
-}
-EVENTS = {
-    "config-inited": _compile_catalogs,
-    "builder-inited": _put_font,
-    "env-get-outdated": _outdated,
-    "env-before-read-docs": _perform_runs,
-    "env-purge-doc": _purge,
-    "source-read": _put_shelf,
-    "missing-reference": _chapter_with_number,
-    "html-page-context": _finish_page,
-}
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -427,14 +355,22 @@ def setup(app: Sphinx) -> dict[str, bool]:
     dict of str to bool
         Properties of the extension.
     """
-    for name, directive in DIRECTIVES.items():
-        app.add_directive(name, directive)
+    app.add_directive("show", Show)
+    app.add_directive("when", When)
+    app.add_directive("session", Session)
+    app.add_directive("run-figure", RunFigure)
+    app.add_directive("exercise", Exercise)
+    app.add_directive("answer", Answer)
     app.add_role("value", Value())
     app.add_role("dfn", Definition(), override=True)
     app.add_role("chapter", XRefRole(warn_dangling=True))
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
-    for event, function in EVENTS.items():
-        app.connect(event, function)
+    app.connect("config-inited", _compile_catalogs)
+    app.connect("env-get-outdated", _outdated)
+    app.connect("env-before-read-docs", _perform_runs)
+    app.connect("source-read", _put_shelf)
+    app.connect("missing-reference", _chapter_with_number)
+    app.connect("html-page-context", _finish_page)
     app.connect("doctree-read", _finish_figures)
     app.connect("doctree-read", _put_answers_apart, priority=400)  # before the contents are collected
     return {"parallel_read_safe": False, "parallel_write_safe": True}

@@ -1,55 +1,32 @@
-"""Excerpts of Maxima sources, by the name of the function that they define."""
-
-import re
-from dataclasses import dataclass
+"""Statements of scene files, by the name that they define."""
 
 from ..failures import ErrorKind, HolonomError
 from ..files import shared
 from ..maxima import statement_ends
 
 
-@dataclass(frozen=True)
-class Excerpt:
-    """A definition in a Maxima file, with the comment just above it."""
-
-    file: str  # path of the file, relative to the root that it was asked of
-    name: str  # what is defined
-    text: str
-
-
-def excerpt(file: str, name: str) -> Excerpt:
-    """Find the definition of a Maxima function or variable in a file.
+def excerpt(file: str, name: str) -> str:
+    """Return the statement of an example that assigns a name.
 
     Parameters
     ----------
     file : str
-        Maxima file, relative to the root.
+        Scene file, relative to the folder of the examples.
     name : str
-        Name of the function or variable.
+        Name that the statement assigns, at the beginning of a line.
 
     Returns
     -------
-    Excerpt
-        Lines with their place.
+    str
+        Lines as they are in the file.
 
     Raises
     ------
     HolonomError
-        The file does not define it.
+        The file does not assign the name.
     """
-    folder, _, rest = file.partition("/")
-    text = (shared(folder) / rest).read_text(encoding="utf-8")
-    found = re.search(rf"^{re.escape(name)}\s*(\([^()]*\)\s*:=|:)", text, re.MULTILINE)
-    if found is None:
+    text = "\n" + (shared("examples") / file).read_text(encoding="utf-8")
+    start = text.find(f"\n{name} : ") + 1
+    if not start:
         raise HolonomError(ErrorKind.DEFINITION_MISSING, file, name)
-    start = _with_comment(text, found.start())
-    end = next(statement_ends(text, found.start()), len(text))
-    return Excerpt(file, name, text[start:end])
-
-
-def _with_comment(text: str, start: int) -> int:
-    """Return the start of the comment that ends on the line above, or `start`."""
-    if not text[:start].endswith("*/\n"):
-        return start
-    opening = text.rindex("/*", 0, start)
-    return opening if text[:opening].endswith("\n\n") else start
+    return text[start : next(statement_ends(text, start), len(text))]

@@ -1,33 +1,16 @@
 """Final changes of pages: links to equations and column names of folded tables."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 
 from markupsafe import Markup, escape
 
 TAG = re.compile(r"(<[^>]+>)")
 TAG_NAME = re.compile(r"</?([\w:]+)")
-UNLINKED = {
-    "a",
-    "code",
-    "pre",
-    "math",
-    "h1",
-    "h2",
-    "h3",
-    "h4",
-    "title",
-    "style",
-    "script",
-    "svg",
-    "button",
-    "nav",
-    "label",
-}
+UNLINKED = {"a", "code", "pre", "math", "h1", "h2", "h3", "h4", "style", "script", "svg", "button", "nav", "label"}
 REFERENCE = re.compile(r"\((\d{1,2}|3a)\)")
 EQUATION = re.compile(r'id="eq-(\d{1,2}|3a)"')
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
-HEADED = re.compile(r"<thead>.*?</thead>", re.DOTALL)
 COLUMN = re.compile(r"<th [^>]*>(.*?)</th>", re.DOTALL)
 ROW = re.compile(r"<tr>.*?</tr>", re.DOTALL)
 CELL = re.compile(r"<(th|td)\b")
@@ -81,19 +64,14 @@ def with_columns(page: str) -> str:
     str
         HTML of the page.
     """
-    return TABLE.sub(lambda table: _with_columns(table[0]), page)
+    return TABLE.sub(_with_columns, page)
 
 
-def _with_columns(table: str) -> str:
-    head = HEADED.search(table)
-    if head is None:
-        return table
-    columns = [escape(Markup(each).striptags()) for each in COLUMN.findall(head[0])]
-    return table[: head.end()] + ROW.sub(lambda row: _labelled(row[0], columns), table[head.end() :])
+def _with_columns(table: re.Match) -> str:
+    head, end, rows = table[0].partition("</thead>")
 
+    def labelled(row: re.Match) -> str:
+        columns = (escape(Markup(each).striptags()) for each in COLUMN.findall(head))
+        return CELL.sub(lambda cell: f'{cell[0]} data-label="{next(columns, "")}"', row[0])
 
-def _labelled(row: str, columns: Sequence[str]) -> str:
-    if "colspan" in row:
-        return row
-    labels = iter(columns)
-    return CELL.sub(lambda cell: f'{cell[0]} data-label="{next(labels, "")}"', row)
+    return head + end + ROW.sub(labelled, rows)

@@ -1,23 +1,20 @@
 """Mathematics on a page: what the templates call to have formulas typeset."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
-import sympy
 from markupsafe import Markup, escape
-from sympy import Expr, IndexedBase, Symbol, sympify
+from sympy import Add, Expr, IndexedBase, Symbol, sympify
 
 from ..errata import PrintedEquation
 from ..language import translatable, translated
-from ..mathjson import Tree, from_sympy
+from ..mathjson import from_sympy
 from ..record import Equation, Relation, System
 from ..typeset.equations import latex_equation
 from ..typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree
 from ..typeset.mathml import inline_mathml, mathml
 
 WIDTH, NARROW = 62, 30  # digits that fit in a card on a desk and on a phone
-TALL = 14  # lines of a formula that is folded, for it would fill a screen
 NOTHING = {
     "6": translatable("There are none: the mass matrix does not depend on the coordinates."),
     "19": translatable(
@@ -116,7 +113,7 @@ def display(left: Expr, right: Expr | int) -> Markup:
         MathML.
     """
     relation = Relation(from_sympy(left), from_sympy(sympify(right)))
-    return _at_each_width(lambda width: [latex_relation(relation, width)], f"{left} = {right}")
+    return _block(lambda width: [latex_relation(relation, width)], f"{left} = {right}")
 
 
 def display_named(name: str, value: Expr) -> Markup:
@@ -150,7 +147,7 @@ def display_expression(value: Expr) -> Markup:
     Markup
         MathML.
     """
-    return _at_each_width(lambda width: [latex(value, width)], str(value))
+    return _block(lambda width: [latex(value, width)], str(value))
 
 
 def symbol(name: str) -> Markup:
@@ -169,20 +166,7 @@ def symbol(name: str) -> Markup:
     return expression(Symbol(name, real=True))
 
 
-@dataclass(frozen=True)
-class Typeset:
-    """An equation as it is shown."""
-
-    formula: Markup  # empty where it has no relations
-    lines: int  # how many it takes on a desk
-
-    @property
-    def is_tall(self) -> bool:
-        """True if the picture would fill a screen."""
-        return self.lines > TALL
-
-
-def typeset(equation: Equation) -> Typeset:
+def typeset(equation: Equation) -> Markup:
     """Return the relations of an equation, entries of an array as one if they fit.
 
     Parameters
@@ -192,12 +176,27 @@ def typeset(equation: Equation) -> Typeset:
 
     Returns
     -------
-    Typeset
-        Typeset relations.
+    Markup
+        MathML.
     """
     spoken = "; ".join(f"{relation.left} = {relation.right}" for relation in equation.relations)
-    lines = sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
-    return Typeset(_at_each_width(lambda width: latex_equation(equation, width), spoken), lines)
+    return _block(lambda width: latex_equation(equation, width), spoken)
+
+
+def lines(equation: Equation) -> int:
+    """Return the number of lines that an equation takes on a desk.
+
+    Parameters
+    ----------
+    equation : Equation
+        Equation of a record.
+
+    Returns
+    -------
+    int
+        Number of lines.
+    """
+    return sum(formula.count(LINE_BREAK) + 1 for formula in latex_equation(equation, WIDTH))
 
 
 def nothing_to_show(equation: Equation) -> str:
@@ -229,9 +228,8 @@ def as_printed(printed: PrintedEquation) -> Markup:
     Markup
         MathML.
     """
-    if printed.agrees:
-        return _printed(printed.printed_tree, printed.printed_tree, MISPRINT, printed.printed)
-    return _printed(printed.printed_tree, printed.corrected_tree, MISPRINT, printed.printed)
+    derived = printed.corrected_tree or printed.printed_tree
+    return _block(lambda width: [latex_marked(printed.printed_tree, derived, MISPRINT, width)], printed.printed)
 
 
 def as_corrected(printed: PrintedEquation) -> Markup:
@@ -247,7 +245,8 @@ def as_corrected(printed: PrintedEquation) -> Markup:
     Markup
         MathML.
     """
-    return _printed(printed.corrected_tree, printed.printed_tree, CORRECTION, printed.corrected)
+    trees = printed.corrected_tree, printed.printed_tree
+    return _block(lambda width: [latex_marked(*trees, CORRECTION, width)], printed.corrected)
 
 
 def difference(printed: PrintedEquation) -> Markup:
@@ -266,26 +265,11 @@ def difference(printed: PrintedEquation) -> Markup:
     return _block(lambda width: [latex_tree(printed.difference_tree, width)], printed.difference)
 
 
-def _printed(tree: Tree, other: Tree, colour: str, text: str) -> Markup:
-    return _block(lambda width: [latex_marked(tree, other, colour, width)], text)
-
-
 def _block(formulas: Formulas, spoken: str) -> Markup:
-    return Markup('<div class="formula">{}</div>').format(_at_each_width(formulas, spoken))
-
-
-def _at_each_width(formulas: Formulas, spoken: str) -> Markup:
-    """Return a formula broken for a wide and for a narrow page."""
-    wide, narrow = formulas(WIDTH), formulas(NARROW)
-    if wide == narrow:
-        return _blocks(wide, spoken)
-    return Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(
-        _blocks(wide, spoken), _blocks(narrow, spoken)
-    )
-
-
-def _blocks(formulas: Sequence[str], spoken: str) -> Markup:
-    return Markup("").join(Markup(mathml(formula, spoken)) for formula in formulas)
+    """Return a formula on lines of its own, broken for a wide and for a narrow page."""
+    wide, narrow = (Markup("".join(mathml(each, spoken) for each in formulas(width))) for width in (WIDTH, NARROW))
+    both = Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(wide, narrow)
+    return Markup('<div class="formula">{}</div>').format(wide if wide == narrow else both)
 
 
 def description(system: System) -> list[Markup]:
@@ -301,19 +285,10 @@ def description(system: System) -> list[Markup]:
     list of Markup
         Formulas.
     """
-    return [display(left, right) for left, right in _parts(system)]
-
-
-def _parts(system: System) -> Iterator[tuple[Expr, Expr]]:
-    yield _symbol("T"), sympy.Add(*(effect.value for effect in system.kinetic_energy))
-    if system.potential_energy:
-        yield _symbol("V"), sympy.Add(*(effect.value for effect in system.potential_energy))
-    if system.forces:
-        for s, components in enumerate(zip(*(effect.value for effect in system.forces), strict=True), 1):
-            yield IndexedBase(_symbol("Q"))[s], sympy.Add(*components)
-    for beta, constraint in enumerate(system.constraints, 1):
-        yield IndexedBase(_symbol("f"))[beta], constraint
-
-
-def _symbol(name: str) -> Symbol:
-    return Symbol(name, real=True)
+    energies = zip(("T", "V"), (system.kinetic_energy, system.potential_energy), strict=True)
+    sums = {name: Add(*(each.value for each in terms)) for name, terms in energies if terms}
+    parts = [(Symbol(name, real=True), value) for name, value in sums.items()]
+    components = zip(*(each.value for each in system.forces), strict=True)
+    parts += [(IndexedBase("Q")[s], Add(*terms)) for s, terms in enumerate(components, 1)]
+    parts += [(IndexedBase("f")[beta], each) for beta, each in enumerate(system.constraints, 1)]
+    return [display(left, right) for left, right in parts]

@@ -15,7 +15,7 @@ from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report, Simulation
 from ..simulation.simulate import simulate
-from .runs import DEFAULT_LIMITS, NO_SETTINGS, FailedRun, Settings, drawn, names_of_scenes, or_failure
+from .runs import DEFAULT_LIMITS, NO_SETTINGS, Settings, drawn
 
 SAMPLES = 1801
 SHOWN = ("trajectory", "multipliers")
@@ -74,27 +74,6 @@ def motion(
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
     film = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
     return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
-
-
-def motions(file: Path, settings: Settings, limits: Limits) -> dict[str, Motion | FailedRun]:
-    """Simulate every scene of a file.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    settings : Settings
-        Values of parameters.
-    limits : Limits
-        Limits of Maxima's runs.
-
-    Returns
-    -------
-    dict of str to Motion or FailedRun
-        Motions by scene.
-    """
-    names = names_of_scenes(file, settings, limits)
-    return {name: or_failure(motion, file, name, None, settings, limits) for name in names}
 
 
 def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:

@@ -4,18 +4,23 @@ Each file has the pages of the folder `own`, in whose names the file's prefix co
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ..error_messages import translatable_error
+from ..failures import HolonomError
 from ..sandbox import Limits
+from ..source import describe
 from .chapter import FILES, Chapter
-from .motions import Motion, figures_of, motions
-from .runs import Run, Settings, study
+from .motions import Motion, figures_of, motion
+from .runs import Derived, Run, Settings, answer, derive
 
 TEXTS = Path(__file__).with_name("own")
 PAGES = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
+OPTIONS_OF_SERIES = (("order", 40),)
 CONTENTS = """
 ```{{toctree}}
 :caption: {file}
@@ -23,6 +28,78 @@ CONTENTS = """
 {names}
 ```
 """
+
+
+@dataclass(frozen=True)
+class FailedRun:
+    """The reason for a missing answer."""
+
+    reason: str
+
+
+@dataclass(frozen=True)
+class FileAnswers:
+    """Answers about one scene file, those about scenes by their names, or the reasons for missing ones.
+
+    A scene that prescribes reactions is not in the record, but it has its free motion and its series.
+    """
+
+    derived: Derived
+    titles: Mapping[str, str]
+    free: Mapping[str, Any]
+    series: Mapping[str, Any]
+    motions: Mapping[str, Motion | FailedRun]
+
+
+def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the value of a function, or a `FailedRun`.
+
+    Parameters
+    ----------
+    compute : callable
+        Function to call.
+    *arguments : Any
+        Arguments of the function.
+
+    Returns
+    -------
+    Any
+        Result, or the `FailedRun`.
+    """
+    try:
+        return compute(*arguments)
+    except HolonomError as error:
+        return FailedRun(translatable_error(error))
+
+
+def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int | None = None) -> FileAnswers:
+    """Return all answers about a scene file.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    settings : Settings
+        Values of parameters.
+    limits : Limits
+        Limits of Maxima's runs.
+    closed_form_size : int or None
+        Number of terms beyond which closed forms are left out, or None for the file's own.
+
+    Returns
+    -------
+    FileAnswers
+        Derivation, and free motion, series and motion by scene.
+    """
+    titles = {scene.name: scene.title for scene in describe(file, dict(settings), limits).scenes}
+    size = (("closed_form_size", closed_form_size),)
+    return FileAnswers(
+        derive(file, settings, limits, closed_form_size),
+        titles,
+        {name: or_failure(answer, "free", file, name, size, settings, limits) for name in titles},
+        {name: or_failure(answer, "series", file, name, OPTIONS_OF_SERIES, settings, limits) for name in titles},
+        {name: or_failure(motion, file, name, None, settings, limits) for name in titles},
+    )
 
 
 def chapters_of_scenes(
@@ -48,8 +125,7 @@ def chapters_of_scenes(
     """
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
-        asked = file, settings, limits
-        runs = {"study": Run(study, (*asked, closed_form_size)), "motions": Run(motions, asked)}
+        runs = {"study": Run(study, (file, settings, limits, closed_form_size))}
         found |= {f"{prefix}{name}": Chapter(runs, partial(_page, prefix, file, name == "motion")) for name in PAGES}
     return found
 
@@ -86,7 +162,8 @@ def _prefix(file: Path, place: int) -> str:
 
 def _page(prefix: str, file: Path, drawn: bool, results: Mapping[str, Any]) -> dict[str, Any]:
     """Return the content of a page of a file, with the drawings of its motions."""
-    names = {name: f"{prefix}scene-{place}" for place, name in enumerate(results["motions"], 1)}
-    shown = [(names[name], found) for name, found in results["motions"].items() if isinstance(found, Motion)]
+    found = results["study"].motions
+    names = {name: f"{prefix}scene-{place}" for place, name in enumerate(found, 1)}
+    shown = [(names[name], each) for name, each in found.items() if isinstance(each, Motion)]
     text = file.read_text(encoding="utf-8", errors="replace")
     return {"figures": names, "file": file.name, "text": text, FILES: figures_of(shown) if drawn else {}}

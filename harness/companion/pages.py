@@ -27,7 +27,7 @@ NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
 MODULES = (cards, curves, excerpts, expressions, mathematics, motion, power, tilted_plane)
-MACROS = ("cards.html", "answers.html", "motions.html", "tables.html")
+MACROS = ("tables.html", "cards.html", "answers.html", "motions.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
 
@@ -107,10 +107,6 @@ def _numbers_of(scene: Scene) -> dict[str, Expr]:
 
 def _symbols(names: Iterable[str]) -> Markup:
     return _listed(map(mathematics.symbol, names))
-
-
-def _emphasized(names: Iterable[str]) -> Markup:
-    return _listed(Markup("<em>{}</em>").format(name) for name in names)
 
 
 def _law_text(law: UniversalLaw) -> Markup:

@@ -11,7 +11,6 @@ import re
 import shutil
 import subprocess
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 from markupsafe import Markup
@@ -29,42 +28,17 @@ from .pages import environment
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 PATIENCE = 300  # seconds that the browser may take
 PRINT = (
-    "--headless=new",
-    "--disable-gpu",
-    "--disable-quic",
-    "--disable-dev-shm-usage",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--no-proxy-server",
-    "--host-resolver-rules=MAP * ~NOTFOUND",
-    "--no-pdf-header-footer",
-    "--generate-pdf-document-outline",
+    "--headless=new --disable-gpu --disable-dev-shm-usage --disable-quic --disable-sync --disable-component-update "
+    "--disable-background-networking --no-first-run --no-proxy-server --no-pdf-header-footer "
+    "--generate-pdf-document-outline"
 )
+OFFLINE = "--host-resolver-rules=MAP * ~NOTFOUND"
 ARTICLE = re.compile(r'<article role="main"[^>]*>(.*?)</article>', re.DOTALL)
-CONTENTS = re.compile(r'<div class="toctree-wrapper compound">.*?</div>', re.DOTALL)
-ANCHOR = re.compile(r'<a class="headerlink".*?</a>')
+REMOVED = re.compile(r'<div class="toctree-wrapper compound">.*?</div>|<a class="headerlink".*?</a>', re.DOTALL)
 TITLE = re.compile(r"<h1>(.*?)</h1>", re.DOTALL)
 IDENTIFIER = re.compile(r'\b(id|for|aria-labelledby)="([^"]+)"')
-LINK = re.compile(r' href="(?!data:|http)([^"#]*)(#[^"]*)?"')
-
-
-@dataclass(frozen=True)
-class Chapter:
-    """A chapter as it is printed."""
-
-    name: str  # of its page
-    title: str
-    text: Markup
-
-
-@dataclass(frozen=True)
-class Term:
-    """A word of the index, and where it is defined."""
-
-    text: str
-    place: str
+LINK = re.compile(r' href="(?!data:|http)([^"#]*)#?([^"]*)"')
+PLACE = r"(?:.*/)?([^/]*)\.html#(.*)"  # of a page, and on it
 
 
 def print_site(app: Sphinx, root: str, pdf: Path) -> None:
@@ -114,52 +88,47 @@ def one_document(app: Sphinx, root: str, numbers: Mapping[str, int]) -> str:
         HTML document.
     """
     front, *chapters = (_chapter(app, name) for name in (root, *app.env.toctree_includes[root]))
-    names = {each.name for each in chapters}
+    names = {each["name"] for each in chapters}
     terms = [
-        Term(text, place)
+        {"text": text, "place": f"{page}.{anchor}"}
         for _, entries in IndexEntries(app.env).create_index(app.builder)
         for text, (links, _, _) in entries
-        for place in (_place(uri) for _, uri in links)
-        if place.partition(".")[0] in names
+        for page, anchor in (re.fullmatch(PLACE, uri).groups() for _, uri in links)
+        if page in names
     ]
     language = app.config.language[:2]
     template = environment(language).get_template("print.html")
     return template.render(front=front, chapters=chapters, terms=terms, numbers=numbers, language=language)
 
 
-def _chapter(app: Sphinx, name: str) -> Chapter:
+def _chapter(app: Sphinx, name: str) -> dict[str, str]:
+    """Return name, title and text of a page, with ids and links for one document."""
     text = ARTICLE.search(Path(app.outdir, f"{name}.html").read_text(encoding="utf-8"))[1]
-    text = ANCHOR.sub("", CONTENTS.sub("", text))
-    title = Markup(TITLE.search(text)[1]).striptags()
-    return Chapter(posixpath.basename(name), title, Markup(_fitted(text, posixpath.basename(name))))
-
-
-def _place(uri: str) -> str:
-    page, _, anchor = uri.partition("#")
-    return f"{posixpath.basename(page).removesuffix('.html')}.{anchor}"
-
-
-def _fitted(text: str, name: str) -> str:
-    """Return the text of a page with ids and links for one document."""
+    text = REMOVED.sub("", text).replace(f'="../{FILES}/', f'="{FILES}/')
+    title, name = Markup(TITLE.search(text)[1]).striptags(), posixpath.basename(name)
 
     def linked(link: re.Match) -> str:
-        page, anchor = link[1], (link[2] or "")[1:]
+        page, anchor = link[1], link[2]
         if "/" in page or (page and not page.endswith(".html")):
             return ""
-        place = page.removesuffix(".html") or name
-        return f' href="#{place}.{anchor}"' if anchor else f' href="#{place}"'
+        return f' href="#{page.removesuffix(".html") or name}{f".{anchor}" if anchor else ""}"'
 
-    text = IDENTIFIER.sub(lambda found: f'{found[1]}="{name}.{found[2]}"', text)
-    return LINK.sub(linked, text).replace(f'="../{FILES}/', f'="{FILES}/')
+    text = IDENTIFIER.sub(rf'\1="{name}.\2"', text)
+    return {"name": name, "title": title, "text": Markup(LINK.sub(linked, text))}
 
 
 def browser() -> str:
-    """Return the browser that prints, or a `FailedRun`.
+    """Return the browser that prints.
 
     Returns
     -------
     str
         Path of the program.
+
+    Raises
+    ------
+    HolonomError
+        No browser is installed.
     """
     found = next(filter(None, map(shutil.which, BROWSERS)), None)
     if found is None:
@@ -170,10 +139,11 @@ def browser() -> str:
 def _printed(page: Path) -> Path:
     """Return the PDF that the browser makes of a page."""
     printed = page.with_suffix(".pdf")
+    files = f"--user-data-dir={page.parent / 'profile'}", f"--print-to-pdf={printed}", page.as_uri()
     root = ["--no-sandbox"] if os.geteuid() == 0 else []  # Chromium's sandbox cannot be set up by root
-    command = [browser(), *PRINT, *root, f"--user-data-dir={page.parent / 'profile'}", f"--print-to-pdf={printed}"]
+    command = [browser(), *PRINT.split(), OFFLINE, *root, *files]
     try:
-        done = subprocess.run([*command, page.as_uri()], capture_output=True, text=True, timeout=PATIENCE)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
     except subprocess.TimeoutExpired:
         raise HolonomError(
             ErrorKind.NOT_PRINTED, detail=translatable("it took longer than %(limit)s s", limit=PATIENCE)

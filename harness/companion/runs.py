@@ -4,7 +4,7 @@ They are performed by processes, not by threads: mpmath's precision belongs to t
 """
 
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
@@ -13,25 +13,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errata import errata  # noqa: F401, for the heads of pages
-from ..error_messages import translatable_error
 from ..failures import ErrorKind, HolonomError
 from ..processes import die_with_parent
 from ..record import derived_record
 from ..sandbox import Limits
 from ..scene import Scene
-from ..source import Source, describe
+from ..source import Source
 from ..temporary import private_directory
 
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport
-    from ..free_motion import FreeMotion
     from ..record import Record
-    from ..series.power_series import MotionSeries
 
 WORKERS = 2
 Settings = tuple[tuple[str, Any], ...]
 NO_SETTINGS: Settings = ()
-OWN_ORDER = (("order", 40),)  # of the series of a reader's scenes
 DEFAULT_LIMITS = Limits()
 
 
@@ -49,36 +45,6 @@ class Derived:
 
     record: "Record"
     report: "CheckReport"
-
-
-@dataclass(frozen=True)
-class FailedRun:
-    """The reason for a missing answer."""
-
-    reason: str
-
-
-@dataclass(frozen=True)
-class FileAnswers:
-    """Answers about one scene file, or the reasons for missing ones.
-
-    A scene that prescribes reactions is not in the record, but it has its free motion and its series.
-    """
-
-    derived: Derived
-    free: "Mapping[str, FreeMotion | FailedRun]"  # by scene
-    series: "Mapping[str, MotionSeries | FailedRun]"  # by scene
-
-    @property
-    def record(self) -> "Record":
-        """The record that Maxima derived."""
-        return self.derived.record
-
-    @property
-    def titles(self) -> dict[str, str]:
-        """Title of each scene, by default its name."""
-        expanded = {name: answer.title for name, answer in self.series.items() if not isinstance(answer, FailedRun)}
-        return {name: name for name in self.free} | expanded | {each.name: each.title for each in self.record.scenes}
 
 
 def derive(
@@ -148,34 +114,6 @@ def answer(
     return found
 
 
-def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int | None = None) -> FileAnswers:
-    """Return all answers about a scene file.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    settings : Settings
-        Values of parameters.
-    limits : Limits
-        Limits of Maxima's runs.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
-
-    Returns
-    -------
-    FileAnswers
-        Derivation, and free motion and series by scene.
-    """
-    names = names_of_scenes(file, settings, limits)
-    closed_forms = (("closed_form_size", closed_form_size),)
-    return FileAnswers(
-        derive(file, settings, limits, closed_form_size),
-        {name: or_failure(answer, "free", file, name, closed_forms, settings, limits) for name in names},
-        {name: or_failure(answer, "series", file, name, OWN_ORDER, settings, limits) for name in names},
-    )
-
-
 def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
     """Perform runs two at a time, equal ones once, and call `done` after each.
 
@@ -223,44 +161,3 @@ def drawn(draw: Callable[[Path], None]) -> str:
         file = directory / "figure.svg"
         draw(file)
         return file.read_text(encoding="utf-8")
-
-
-def names_of_scenes(file: Path, settings: Settings, limits: Limits) -> list[str]:
-    """Return names of a file's scenes, of those too that prescribe reactions.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    settings : Settings
-        Values of parameters.
-    limits : Limits
-        Limits of Maxima's runs.
-
-    Returns
-    -------
-    list of str
-        Names in the order of the file.
-    """
-    return [scene.name for scene in describe(file, dict(settings), limits).scenes]
-
-
-def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """Return the value of a function, or a `FailedRun`.
-
-    Parameters
-    ----------
-    compute : callable
-        Function to call.
-    *arguments : Any
-        Arguments of the function.
-
-    Returns
-    -------
-    Any
-        Result, or the `FailedRun`.
-    """
-    try:
-        return compute(*arguments)
-    except HolonomError as error:
-        return FailedRun(translatable_error(error))

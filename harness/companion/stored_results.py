@@ -49,8 +49,9 @@ def results_of(runs: Iterable[Run], directory: Path | None, compute: Compute) ->
 
 
 def _digest(files: Iterable[Path]) -> str:
-    """Return a digest of the contents of files."""
-    return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in sorted(files))).hexdigest()
+    """Return a digest of the names and contents of files, whatever their folders."""
+    digests = sorted(hashlib.sha256(file.name.encode() + file.read_bytes()).digest() for file in files)
+    return hashlib.sha256(b"".join(digests)).hexdigest()
 
 
 def digest_of_all() -> str:
@@ -61,8 +62,8 @@ def digest_of_all() -> str:
     str
         Hexadecimal digest.
     """
-    chapters = HARNESS / "companion"
-    own = [*chapters.glob("*.py"), *chapters.glob("chapters/*.py"), *chapters.glob("templates/*")]
+    patterns = "companion/*.py", "companion/chapters/*.py", "companion/templates/*", "locale/*/*/holonom.po"
+    own = (file for pattern in patterns for file in HARNESS.glob(pattern))
     return _digest([*_below(shared("maxima")), *_below(shared("examples")), *_below(HARNESS), *own])
 
 
@@ -83,8 +84,6 @@ def _program() -> str:
 
 
 def _below(directory: Path) -> Iterator[Path]:
-    for file in directory.iterdir():
-        if file.is_dir():
-            yield from () if file.name in APART else _below(file)
-        elif file.suffix in SUFFIXES:
-            yield file
+    """Yield the files below a folder that results depend on."""
+    found = (file for file in directory.rglob("*") if file.suffix in SUFFIXES)
+    return (file for file in found if APART.isdisjoint(file.relative_to(directory).parts))

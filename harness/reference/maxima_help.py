@@ -15,6 +15,11 @@ BY_HAND = shared("examples") / "paper" / "by_hand.mac"
 INFO = "holonom.info"
 DEFINITIONS = "Definitions for holonom"
 WIDTH = 79
+INDEX = """(in-package :cl-info)
+(load-info-hashtables (maxima::maxima-load-pathname-directory)
+ '({topics})
+ '({section}))
+"""
 NODE = "\x1f\nFile: {info},  Node: {node},  {links}\n\n"
 SYSTEM, SCENE = "system", "paid_out"  # what the examples assign
 
@@ -43,22 +48,17 @@ def help_files() -> Mapping[str, str]:
 
 def _info_with_index() -> tuple[str, str]:
     """Return the info file, and the Lisp index with the position of each topic."""
-    first = function_texts()[0].name
     text = f"This is {INFO}: how a system and its scenes are described.\n\n"
     text += NODE.format(info=INFO, node="Top", links=f"Next: {DEFINITIONS},  Up: (dir)")
-    text += f"* Menu:\n\n* {DEFINITIONS}::  for example {first}\n\n"
+    text += f"* Menu:\n\n* {DEFINITIONS}::  for example {function_texts()[0].name}\n\n"
     text += NODE.format(info=INFO, node=DEFINITIONS, links="Prev: Top,  Up: Top")
     start, places = len(text), []
     for topic, explained in _topics():
-        places.append(f'({_lisp(topic)} . ("{INFO}" {len(text)} {len(explained)} "{DEFINITIONS}"))')
+        name = topic.replace("\\", "\\\\").replace('"', '\\"')
+        places.append(f'("{name}" . ("{INFO}" {len(text)} {len(explained)} "{DEFINITIONS}"))')
         text += explained + "\n"
     section = f'("{DEFINITIONS}" . ("{INFO}" {start} {len(text) - start}))'
-    listed = "\n  ".join(sorted(places))
-    index = (
-        f"(in-package :cl-info)\n(load-info-hashtables (maxima::maxima-load-pathname-directory)\n"
-        f" '({listed})\n '({section}))\n"
-    )
-    return text, index
+    return text, INDEX.format(topics="\n  ".join(sorted(places)), section=section)
 
 
 def _topics() -> Iterator[tuple[str, str]]:
@@ -66,67 +66,45 @@ def _topics() -> Iterator[tuple[str, str]]:
 
     If several topics share a name, Maxima shows title <1> and title <2>.
     """
-    topics = [*_named_topics()]
+    topics = [(function.name, _function(function)) for function in function_texts()]
+    topics += [(entry.name, _entry(entry)) for function in function_texts() for entry in function.entries]
+    topics += [(part.name, _part(part)) for part in (*part_texts(), *step_texts())]
     shared, met = Counter(name for name, _ in topics), Counter()
     for name, text in topics:
         met[name] += 1
         yield f"{name} <{met[name]}>" if shared[name] > 1 else name, text
 
 
-def _named_topics() -> Iterator[tuple[str, str]]:
-    for function in function_texts():
-        yield function.name, _function(function)
-        yield from ((entry.name, _entry(entry)) for entry in function.entries)
-    yield from ((part.name, _part(part)) for part in (*part_texts(), *step_texts()))
-
-
 def _function(function: FunctionText) -> str:
     entries = "".join(_filled(f"{entry.name}: {entry.type}", 10, 14) for entry in function.entries)
-    return (
-        f" -- Function: {function.name}\n{_filled(function.summary)}\n{_shown(function.call)}\n"
-        f"{_filled('Example:')}\n{_shown(_assignment(function))}\n"
-        f"{_filled('Its entries, in any order; each has a topic of its own:')}\n{entries}"
-    )
+    shown = {"Form:": function.call, "Example:": _assignment(function)}
+    heading = _filled("Its entries, in any order; each has a topic of its own:")
+    return f"{_topic(f'Function: {function.name}', function.summary, shown)}\n{heading}\n{entries}"
 
 
 def _entry(entry: EntryText) -> str:
-    example = ",\n".join([entry.example, *entry.also])
-    text = (
-        f" -- Entry of {entry.function}: {entry.name}\n{_filled(entry.text)}\n"
-        f"{_filled(f'What it is: {entry.type}.')}{_filled(f'Without it: {entry.default}.')}\n"
-        f"{_filled('Example:')}\n{_shown(example)}"
-    )
-    if entry.system:
-        system = ",\n".join(entry.system)
-        text += f"{_filled('of a system with')}\n{_shown(system)}"
-    return text + (_errors(entry.errors) if entry.errors else "")
+    title, example = f"Entry of {entry.function}: {entry.name}", ",\n".join([entry.example, *entry.also])
+    text = f"{entry.text} What it is: {entry.type}. Without it: {entry.default}."
+    return _topic(title, text, {"Example:": example, "of a system with": ",\n".join(entry.system)}, entry.errors)
 
 
 def _part(part: PartText) -> str:
     example = "\n".join([*part.context, f"{part.example};"])
-    gives = f"\n{_filled('which gives')}\n{_shown(part.gives)}" if part.gives else ""
-    return (
-        f" -- Function: {part.call}\n{_filled(part.text)}\n{_filled('Example:')}\n{_shown(example)}{gives}"
-        f"{_errors(part.errors)}"
-    )
+    return _topic(f"Function: {part.call}", part.text, {"Example:": example, "which gives": part.gives}, part.errors)
 
 
-def _errors(errors: Sequence[ErrorExample]) -> str:
-    lines = "".join(_filled(f"{error.given}: {error.message}", 10, 14) for error in errors)
-    return f"\n{_filled('Errors, and words of their messages:')}\n{lines}"
+def _topic(title: str, text: str, shown: Mapping[str, str], errors: Sequence[ErrorExample] = ()) -> str:
+    """Return a topic: its title, its text, lines of Maxima under their labels, and errors."""
+    blocks = [f" -- {title}\n{_filled(text)}"]
+    blocks += [f"{_filled(label)}\n{textwrap.indent(lines, ' ' * 10)}\n" for label, lines in shown.items() if lines]
+    if errors:
+        given = "".join(_filled(f"{error.given}: {error.message}", 10, 14) for error in errors)
+        blocks.append(f"{_filled('Errors, and words of their messages:')}\n{given}")
+    return "\n".join(blocks)
 
 
 def _filled(text: str, first: int = 5, later: int = 5) -> str:
     return textwrap.fill(text, WIDTH, initial_indent=" " * first, subsequent_indent=" " * later) + "\n"
-
-
-def _shown(lines: str) -> str:
-    return textwrap.indent(lines, " " * 10) + "\n"
-
-
-def _lisp(text: str) -> str:
-    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'
 
 
 # ---- example(holonomic_system), demo(holonom) --------------------------------------------------------------------

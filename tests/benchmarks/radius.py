@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from holonom.companion.convergence import draw_radius, find_radii
+from holonom.files import write_whole
 
 if __name__ == "__main__":
-    draw_radius(find_radii(), Path(sys.argv[1]))
+    write_whole(Path(sys.argv[1]), draw_radius(find_radii()))

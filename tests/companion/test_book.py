@@ -2,7 +2,6 @@
 
 import math
 import re
-from functools import partial
 from itertools import pairwise
 
 import pages
@@ -16,7 +15,7 @@ from holonom.companion.chapter import chapters_of_the_paper
 from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
 from holonom.companion.convergence import draw_radius
 from holonom.companion.directives import FILES
-from holonom.companion.runs import Run, derive, drawn
+from holonom.companion.runs import Run, derive
 from holonom.errata import errata
 from holonom.series.radius import ENTIRE
 
@@ -52,7 +51,7 @@ def test_nothing_is_loaded_from_the_network(companion):
         assert not [each for each in loaded if each and "//" in each], page.name
     assert "http" not in (companion / FILES / "knob.js").read_text().replace("http://www.w3.org/2000/svg", "")
     style = (companion / "_static" / "holonom.css").read_text()
-    assert re.findall(r"url\((.*?)\)", style) == ['"../_runs/mathematics.woff"']
+    assert re.findall(r"url\((.*?)\)", style) == ['"mathematics.woff"']
     assert "@import" not in style
 
 
@@ -63,10 +62,10 @@ def test_no_formula_needs_a_script(companion):
 
 
 def test_the_font_says_under_which_licence_it_travels(companion):
-    notice = (companion / FILES / "mathematics.txt").read_text()
+    notice = (companion / "_static" / "mathematics.txt").read_text()
     assert "SIL Open Font License" in notice
     assert "STIX Fonts Project Authors" in notice
-    names = TTFont(companion / FILES / "mathematics.woff")["name"]
+    names = TTFont(companion / "_static" / "mathematics.woff")["name"]
     assert "SIL Open Font License" in names.getDebugName(13)
 
 
@@ -238,7 +237,7 @@ def test_the_radii_of_the_whole_figure_are_those_of_the_truth():
             assert abs(radius.estimate - math.sqrt(u0**2 + 0.5)) <= radius.uncertainty, u0
     assert None not in {radius.estimate for radius in found.fine}
     assert set(found.entire) == {ENTIRE}
-    assert "<svg" in drawn(partial(draw_radius, found))
+    assert "<svg" in draw_radius(found)
 
 
 @pytest.mark.long

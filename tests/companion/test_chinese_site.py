@@ -13,7 +13,7 @@ from refusing import english_in
 from test_languages import CODE, prose
 
 import holonom
-from holonom.companion.runs import or_failure
+from holonom.companion.own_scenes import or_failure
 from holonom.language import speaking, translated
 
 SCENES = sorted(Path(__file__).with_name("chinese").glob("*.mac"))

@@ -1,4 +1,4 @@
-"""Maxima lines are taken from the source file as they stand there."""
+"""Statements of scene files are taken from them as they stand there."""
 
 import pytest
 
@@ -8,12 +8,11 @@ from holonom.failures import ErrorKind, HolonomError
 
 TEXT = """/* The head. */
 
-/* Twice x; a comment may say f(x) := $ */
-f(x) := block([s : "a $ b"],
+f : block([s : "a $ b"],
   /* not; here */
   2*x)$
 
-g : 7$ h(y) := y;
+g : 7$ h : y;
 """
 
 
@@ -21,19 +20,15 @@ g : 7$ h(y) := y;
 def file(tmp_path, monkeypatch):
     (tmp_path / "file.mac").write_text(TEXT)
     monkeypatch.setattr(excerpts, "shared", lambda folder: tmp_path)
-    return "maxima/file.mac"
+    return "file.mac"
 
 
-def test_a_definition_comes_with_the_comment_above_it_and_ends_with_its_own_terminator(file):
-    found = excerpt(file, "f")
-    assert found.text == TEXT[TEXT.index("/* Twice") : TEXT.index("\n\ng :")]
+def test_a_statement_ends_with_its_own_terminator(file):
+    assert excerpt(file, "f") == TEXT[TEXT.index("f :") : TEXT.index("\n\ng :")]
+    assert excerpt(file, "g") == "g : 7$"
 
 
-def test_a_variable_is_defined_by_a_colon(file):
-    assert excerpt(file, "g").text == "g : 7$"
-
-
-def test_what_is_not_defined_is_missed_loudly(file):
+def test_what_is_not_assigned_is_missed_loudly(file):
     with pytest.raises(HolonomError) as caught:
         excerpt(file, "x")
     assert caught.value.kind is ErrorKind.DEFINITION_MISSING

@@ -12,13 +12,11 @@ SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture(scope="module")
-def figure(results, tmp_path_factory):
-    path = tmp_path_factory.mktemp("figures") / "radius.svg"
+def figure(results):
     found = results[chapters_of_the_paper()["radius-of-convergence"].runs["radius"]]
     with pytest.MonkeyPatch.context() as few:
         few.setattr(convergence, "ORDERS_OF_RADII", FEW_ORDERS)
-        convergence.draw_radius(found, path)
-    return ElementTree.parse(path)
+        return ElementTree.fromstring(convergence.draw_radius(found))
 
 
 def test_it_names_what_it_shows(figure):

@@ -13,17 +13,11 @@ from . import EXAMPLES
 EXHIBITS = table("gallery")["exhibit"]
 
 
-RUNS = {
-    each["name"]: Run(
-        motion,
-        (
-            EXAMPLES.parent / each["file"],
-            each.get("scene"),
-            Fraction(each["until"]) if "until" in each else None,
-        ),
-    )
-    for each in EXHIBITS
-}
+def _run(file: str, scene: str | None = None, until: str | None = None, **shown: str) -> Run:
+    return Run(motion, (EXAMPLES.parent / file, scene, until and Fraction(until)))
+
+
+RUNS = {each["name"]: _run(**each) for each in EXHIBITS}
 
 
 def page(results: Mapping[str, Motion]) -> dict[str, Any]:

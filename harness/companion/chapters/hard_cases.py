@@ -25,12 +25,8 @@ def page(results: Mapping[str, CaseReport]) -> dict[str, Any]:
         Values by name.
     """
     reports = list(results.values())
-    figure = drawn(partial(draw_stability, reports))
-    return {
-        "reports": reports,
-        "sweeps": [each for each in reports if each.sweep],
-        FILES: {"hard-cases.svg": figure},
-    }
+    figures = {"hard-cases.svg": drawn(partial(draw_stability, reports))}
+    return {"reports": reports, "sweeps": [each for each in reports if each.sweep], FILES: figures}
 
 
 def _examined(name: str) -> CaseReport:

@@ -5,24 +5,21 @@ drawing, and for each law what the accelerations are divided by, at complex time
 """
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import sympy
-from sympy import I, Symbol
+from sympy import I, Symbol, jscode, simplify
 
 from ...figures.style import text_with_symbols
-from ...mathjson import from_sympy
 from ...program.model import Model, scene_model
 from ...program.motion_problem import motion_problem
 from ...program.motion_program import Program
 from ...program.request import Request
 from ...program.targets import javascript
-from ...record import Scene
 from ...sandbox import Limits
 from .. import TEMPLATES
-from ..cards import named_equations, scene_named
+from ..cards import scene_named
 from ..chapter import FILES
 from ..runs import Derived, Run
 from . import TILTED_PLANE
@@ -51,7 +48,7 @@ def page(results: Mapping[str, Any]) -> dict[str, Any]:
         "values": {name: value for model in results["models"].values() for name, value in model.values.items()},
         "samples": SAMPLES,
         "law_of": lambda motion: text_with_symbols(motion.title.rpartition(", ")[2]),
-        FILES: {"knob.js": script(results["knob"], results["models"], results["drawing"])},
+        FILES: {"knob.js": _script(results["knob"], results["models"], *results["drawing"])},
     }
 
 
@@ -77,77 +74,34 @@ def _drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
     return tuple(map(str, drawing.shapes)), drawing.program
 
 
-def script(found: Derived, models: Mapping[str, Model], drawing: tuple[tuple[str, ...], Program]) -> str:
-    """Return the script of the page.
-
-    Parameters
-    ----------
-    found : Derived
-        Derivation of the example.
-    models : mapping of str to Model
-        Models by control law.
-    drawing : tuple
-        Kinds of the drawn parts, and their program.
-
-    Returns
-    -------
-    str
-        JavaScript.
-    """
-    _require_free_law(found)
-    shapes, program = drawing
+def _script(found: Derived, models: Mapping[str, Model], shapes: Sequence[str], drawing: Program) -> str:
+    """Return the script of the page: programs, laws, singular times, and what works with them."""
     model = models["linear"]
-    data = {
-        "coordinates": model.coordinates,
-        "until": UNTIL,
-        "samples": SAMPLES,
-        "shapes": shapes,
-    }
-    parts = [
-        javascript.write(model.motion, "motion"),
-        javascript.write(model.constraints, "constraints"),
-        javascript.write(program, "drawing"),
-        *(javascript.write(each.law, f"law_{law}") for law, each in models.items()),
-        *(javascript.write(_singular(found, scene), f"singular_{law}") for law, scene in LAWS.items()),
-        f"const LAWS = {{{', '.join(f'{law}: law_{law}' for law in LAWS)}}};",
-        f"const SINGULAR = {{{', '.join(f'{law}: singular_{law}' for law in LAWS)}}};",
-        f"const DATA = {json.dumps(data)};",
-        (TEMPLATES / "knob.js").read_text(encoding="utf-8"),
-    ]
-    return "\n".join(parts)
-
-
-def _require_free_law(found: Derived) -> None:
-    """Raise unless the multiplier vanishes under u0 exp(kappa t), kappa^2 = k."""
-    multiplier = named_equations(found)["multipliers"].relations[0].right
-    kappa, k, c, u, rate, second = (Symbol(name, real=True) for name in ("kappa", "k", "c", "u", "dot(u)", "ddot(u)"))
-    free = {second: kappa**2 * u, rate: kappa * u, k: kappa**2, c: 2 * kappa}
-    if sympy.simplify(multiplier.subs(free)) != 0:
-        raise ValueError("the exponential law does not make every motion free")
-
-
-def _singular(found: Derived, name: str) -> Program:
-    """Return real and imaginary part of the denominator of (11) at time a + i b."""
-    scene: Scene = scene_named(found, name)
-    a, b, t = (Symbol(letter, real=True) for letter in ("a", "b", "t"))
-    law = {Symbol(control, real=True): value.subs(t, a + I * b) for control, value in scene.control_law.items()}
-    real, imaginary = denominator(found).subs(law).expand(complex=True).as_real_imag()
-    parts = {"re": sympy.simplify(real), "im": sympy.simplify(imaginary)}
-    inputs = sorted({str(symbol) for part in parts.values() for symbol in part.free_symbols} | {"a", "b"})
-    return Program.of_document(
-        {
-            "format": "holonom-program",
-            "version": 2,
-            "scene": name,
-            "solve": "direct",
-            "method": "singular times",
-            "redundant": [],
-            "operations": sum(int(part.count_ops()) for part in parts.values()),
-            "inputs": inputs,
-            "assignments": [[f"w_{part}", from_sympy(value)] for part, value in parts.items()],
-            "outputs": {part: f"w_{part}" for part in parts},
-        }
+    data = {"coordinates": model.coordinates, "until": UNTIL, "samples": SAMPLES, "shapes": shapes}
+    singular = [f"{law}: {_singular(found, scene)}" for law, scene in LAWS.items()]
+    return "\n".join(
+        [
+            javascript.write(model.motion, "motion"),
+            javascript.write(model.constraints, "constraints"),
+            javascript.write(drawing, "drawing"),
+            *(javascript.write(each.law, f"law_{law}") for law, each in models.items()),
+            f"const LAWS = {{{', '.join(f'{law}: law_{law}' for law in LAWS)}}};",
+            f"const SINGULAR = {{{', '.join(singular)}}};",
+            f"const DATA = {json.dumps(data)};",
+            (TEMPLATES / "knob.js").read_text(encoding="utf-8"),
+        ]
     )
+
+
+def _singular(found: Derived, name: str) -> str:
+    """Return a function of JavaScript for the denominator of (11) at time a + i b."""
+    a, b, t = (Symbol(letter, real=True) for letter in ("a", "b", "t"))
+    laws = scene_named(found, name).control_law.items()
+    law = {Symbol(control, real=True): value.subs(t, a + I * b) for control, value in laws}
+    parts = denominator(found).subs(law).expand(complex=True).as_real_imag()
+    names = sorted({str(symbol) for part in parts for symbol in part.free_symbols})
+    real, imaginary = (jscode(simplify(part)) for part in parts)
+    return f"({{{', '.join(names)}}}) => ({{re: {real}, im: {imaginary}}})"
 
 
 RUNS = {"models": Run(models, (TILTED_PLANE,)), "drawing": Run(_drawing_of, (TILTED_PLANE, LAWS["linear"]))}

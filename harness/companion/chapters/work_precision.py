@@ -21,15 +21,12 @@ from ..chapter import FILES
 from ..runs import Run, drawn
 from . import INITIAL_SCENE, PAPER, PENDULUM
 
-SHORT_PLAN = {
-    "tolerances": {
-        "double": (1e-4, 1e-8, 1e-12, 1e-16),
-        "quadruple": (1e-16, 1e-24, 1e-32),
-        "50": (1e-30, 1e-40, 1e-50),
-    },
-    "solver_tolerances": (1e-4, 1e-8, 1e-12),
-    "orders": (10, 20, 40, 80),
-}
+DOUBLE, QUADRUPLE, FIFTY = (1e-4, 1e-8, 1e-12, 1e-16), (1e-16, 1e-24, 1e-32), (1e-30, 1e-40, 1e-50)
+SHORT_PLAN = Plan(
+    tolerances={"double": DOUBLE, "quadruple": QUADRUPLE, "50": FIFTY},
+    solver_tolerances=DOUBLE[:3],
+    orders=(10, 20, 40, 80),
+)
 SWING, TOLERANCE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
 
 
@@ -53,11 +50,8 @@ def page(results: Mapping[str, Any]) -> dict[str, Any]:
         "solves": [each for each in measured.measurements if each.group is Group.SOLVE],
         "tolerance": TOLERANCE,
         "worst": {
-            method: {
-                "constraints": max(found.residuals["position"]),
-                "energy": max(abs(found.energy["energy_error"])),
-            }
-            for method, found in motions.items()
+            method: {"constraints": max(each.residuals["position"]), "energy": max(abs(each.energy["energy_error"]))}
+            for method, each in motions.items()
         },
         "pendulum": motions[Stabilization.NONE],
         FILES: {
@@ -69,7 +63,7 @@ def page(results: Mapping[str, Any]) -> dict[str, Any]:
 
 def _short_study(file: Path, scene: str) -> Study:
     """Return the study of `holonom accuracy`, with fewer settings."""
-    return study(file, Request(scene), Limits(), Plan(**SHORT_PLAN))
+    return study(file, Request(scene), Limits(), SHORT_PLAN)
 
 
 def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
@@ -94,7 +88,4 @@ def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
     }
 
 
-RUNS = {
-    "study": Run(_short_study, (PAPER, INITIAL_SCENE)),
-    "drift": Run(drifting, (PENDULUM, SWING)),
-}
+RUNS = {"study": Run(_short_study, (PAPER, INITIAL_SCENE)), "drift": Run(drifting, (PENDULUM, SWING))}

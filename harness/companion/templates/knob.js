@@ -1,45 +1,20 @@
-/* Turn the knob: the motion programs above, followed by the method of Dormand and Prince (1980) of order 5(4). */
+/* Turn the knob: the motion programs above, followed by the classical method of Runge and Kutta. */
 "use strict";
 
 const knob = (() => {
-  const TOLERANCE = 1e-10, SHORTEST = 1e-9;
-  const NODES = [0, 1/5, 3/10, 4/5, 8/9, 1, 1];
-  const STAGES = [
-    [], [1/5], [3/40, 9/40], [44/45, -56/15, 32/9],
-    [19372/6561, -25360/2187, 64448/6561, -212/729],
-    [9017/3168, -355/33, 46732/5247, 49/176, -5103/18656],
-    [35/384, 0, 500/1113, 125/192, -2187/6784, 11/84]];
-  const ERRORS = [71/57600, 0, -71/16695, 71/1920, -17253/339200, 22/525, -1/40];
-
+  const LONGEST = 0.005;  // step
   const sum = numbers => numbers.reduce((a, b) => a + b, 0);
-  const combined = (y, h, weights, slopes) => y.map((value, i) => value + h*sum(weights.map((w, k) => w*slopes[k][i])));
-
-  /* A step: the state at its end, and its error relative to the tolerance. */
-  function step(rate, t, y, h) {
-    const slopes = [];
-    let end = y;
-    for (let k = 0; k < NODES.length; k++) {
-      end = combined(y, h, STAGES[k], slopes);
-      slopes.push(rate(t + NODES[k]*h, end));
-    }
-    const errors = combined(y.map(() => 0), h, ERRORS, slopes);
-    return [end, Math.max(...errors.map((error, i) => Math.abs(error)/(TOLERANCE*(1 + Math.abs(end[i])))))];
-  }
+  const moved = (y, h, slope) => y.map((value, i) => value + h*slope[i]);
 
   /* The states at the times, the first of which is that of y. */
   function states(rate, times, y) {
     const found = [y];
-    let t = times[0], h = 0.01;
-    for (const until of times.slice(1)) {
-      while (t < until) {
-        const taken = Math.min(h, until - t);
-        const [end, error] = step(rate, t, y, taken);
-        if (!(error <= 1) && taken > SHORTEST) {
-          h = taken*Math.max(0.1, 0.9*Math.pow(error, -0.2) || 0.1);
-          continue;
-        }
-        [t, y] = [taken === until - t ? until : t + taken, end];
-        h = Math.max(h, taken)*Math.min(5, 0.9*Math.pow(Math.max(error, 1e-10), -0.2));
+    for (let k = 1; k < times.length; k++) {
+      const steps = Math.ceil((times[k] - times[k - 1])/LONGEST), h = (times[k] - times[k - 1])/steps;
+      for (let j = 0; j < steps; j++) {
+        const t = times[k - 1] + j*h, first = rate(t, y), second = rate(t + h/2, moved(y, h/2, first));
+        const third = rate(t + h/2, moved(y, h/2, second)), fourth = rate(t + h, moved(y, h, third));
+        y = y.map((value, i) => value + h/6*(first[i] + 2*second[i] + 2*third[i] + fourth[i]));
       }
       found.push(y);
     }
@@ -85,7 +60,7 @@ const knob = (() => {
     const zero = (one, other) => equal(settings[one], -settings[other]);
     if (zero("q1", "q2") && zero("dot(q1)", "dot(q2)")) return [];  // q1 + q2 stays zero, and so does the multiplier
     const scale = law === "exponential" ? 1/Math.abs(kappa) : 1;  // of times; with kappa = 0 nothing is found, rightly
-    const at = (a, b) => run(SINGULAR[settings.law], {...settings, a, b});
+    const at = (a, b) => SINGULAR[settings.law]({...settings, a, b});
     const found = [];
     for (let a = -4; a <= 4; a += 0.5) for (let b = 0.1; b <= 4.2; b += 0.5) {
       let [x, y, size] = [scale*a, scale*b, Infinity];
@@ -102,7 +77,7 @@ const knob = (() => {
       && found.findIndex(([p, q]) => Math.hypot(x - p, y - q) < 1e-5) === k);
   }
 
-  const radius = settings => Math.min(Infinity, ...singularities(settings).map(([x, y]) => Math.hypot(x, y)));
+  const radius = settings => Math.min(Infinity, ...singularities(settings).map(point => Math.hypot(...point)));
 
   return {follow, singularities, radius};
 })();
@@ -225,32 +200,29 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
   }
 
   const play = form.elements.play;
-  let playing = false;
-
-  function forward() {
-    if (!playing) return;
-    time.value = Number(time.value) + 1;
-    show();
-    if (Number(time.value) >= Number(time.max)) stop();
-    else requestAnimationFrame(forward);
-  }
+  let timer = 0;
 
   function stop() {
-    playing = false;
+    timer = clearInterval(timer);
     play.textContent = play.dataset.play;
     announce();
   }
 
+  function forward() {
+    time.value = Number(time.value) + 1;
+    show();
+    if (time.value === time.max) stop();
+  }
+
   function start() {
-    playing = true;
+    if (time.value === time.max) time.value = 0;
     play.textContent = play.dataset.pause;
-    if (Number(time.value) >= Number(time.max)) time.value = 0;
-    forward();
+    timer = setInterval(forward, 1000*DATA.until/DATA.samples);
   }
 
   form.addEventListener("input", event => event.target === time ? show() : turn());
   form.addEventListener("change", announce);
-  play.addEventListener("click", () => playing ? stop() : start());
+  play.addEventListener("click", () => timer ? stop() : start());
   form.hidden = false;
   turn();
 });
