@@ -220,7 +220,7 @@ def missing(derived: Derived) -> list[EquationVerdict]:
 
 
 def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -> list[str]:
-    """Return anchors of equations on one page, numbers if they are unique, else with the names.
+    """Return anchors of equations on one page: numbers, with names if not unique.
 
     Parameters
     ----------
@@ -249,7 +249,7 @@ def _cards(
     printed: Iterable[PrintedEquation],
     prefix: str = "",
 ) -> list[Card]:
-    """Return the cards of the first system's equations, with their instances in all systems."""
+    """Return cards of the first system's equations, with those of all systems."""
     equations = {each.equation.id: each.equation for each in instances[0] if each.equation.number in numbers}
     known, controlled = tuple(printed), bool(first.record.system.controls)
     return [

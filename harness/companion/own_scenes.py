@@ -39,8 +39,9 @@ class FailedRun:
 
 @dataclass(frozen=True)
 class FileAnswers:
-    """Answers about one scene file, those about scenes by their names, or the reasons for missing ones.
+    """Answers about one scene file, or the reasons for missing ones.
 
+    Those about scenes are by the scenes' names.
     A scene that prescribes reactions is not in the record, but it has its free motion and its series.
     """
 

@@ -94,7 +94,7 @@ def _part(part: PartText) -> str:
 
 
 def _topic(title: str, text: str, shown: Mapping[str, str], errors: Sequence[ErrorExample] = ()) -> str:
-    """Return a topic: its title, its text, lines of Maxima under their labels, and errors."""
+    """Return a topic: title, text, lines of Maxima under their labels, and errors."""
     blocks = [f" -- {title}\n{_filled(text)}"]
     blocks += [f"{_filled(label)}\n{textwrap.indent(lines, ' ' * 10)}\n" for label, lines in shown.items() if lines]
     if errors:

@@ -75,7 +75,7 @@ def _drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
 
 
 def _script(found: Derived, models: Mapping[str, Model], shapes: Sequence[str], drawing: Program) -> str:
-    """Return the script of the page: programs, laws, singular times, and what works with them."""
+    """Return the script of the page: programs, laws, singular times, and its own part."""
     model = models["linear"]
     data = {"coordinates": model.coordinates, "until": UNTIL, "samples": SAMPLES, "shapes": shapes}
     singular = [f"{law}: {_singular(found, scene)}" for law, scene in LAWS.items()]

@@ -319,7 +319,7 @@ class DependentConstraints(FactoredConstraints):
         return self._weighted.unweighted(np.matvec(self._basis, self._along(residual)))
 
     def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations, and multipliers without their part in the null space of J^T.
+        """Return accelerations, and multipliers outside the null space of J^T.
 
         Parameters
         ----------
