@@ -172,7 +172,7 @@ def sweep(
     grid: Mapping[str, tuple[Number, Number, int]] | None = None,
     values: Mapping[str, Sequence[Number]] | None = None,
     sample: Mapping[str, str] | None = None,
-    keep: Sequence[str] = ("final",),
+    keep: Sequence[str] | str = ("final",),
     output: str | Path | None = None,
     size: int | None = None,
     seed: int | None = None,
@@ -191,7 +191,7 @@ def sweep(
         Lists of values.
     sample : mapping of str to str
         Distributions: ``normal(MEAN,DEVIATION)``, ``uniform(MIN,MAX)`` or ``loguniform(MIN,MAX)``.
-    keep : sequence of str
+    keep : str or sequence of str
         Outputs, such as ``final``, ``max(x)``, ``at(x,2)``, as for ``holonom sweep --keep``.
     output : str, Path or None
         Folder of the results. Default: a temporary one, removed with the result.
@@ -230,7 +230,8 @@ def sweep(
     varied += [axes.listed(name, numbers) for name, numbers in (values or {}).items()]
     drawn = [axes.sample(name, text) for name, text in (sample or {}).items()]
     request = opened._request(options.pop("solve"))
-    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), read_quantities(keep), **options)
+    outputs = read_quantities([keep] if isinstance(keep, str) else keep)
+    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), outputs, **options)
     directory = OwnDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
     found = run_sweep(opened._source, request, wanted, folder, opened.limits)

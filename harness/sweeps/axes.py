@@ -305,7 +305,8 @@ def listed(name: str, numbers: Sequence[Number], text: str | None = None) -> Lis
         As `read_axes`.
     """
     text = text or f"{name}={','.join(map(str, numbers))}"
-    return Listed(_required_name(name, text), tuple(_number(number, text) for number in numbers or [""]), text)
+    values = numbers if len(numbers) else [""]
+    return Listed(_required_name(name, text), tuple(_number(number, text) for number in values), text)
 
 
 def sample(name: str, drawn: str, text: str | None = None) -> Sample:

@@ -5,7 +5,7 @@ import pytest
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.sweeps.axes import read_axes
+from holonom.sweeps.axes import listed, read_axes
 
 
 def test_the_last_parameter_varies_fastest():
@@ -66,6 +66,12 @@ def test_a_malformed_axis_raises_with_its_option(grids, lists, samples, size):
 def test_axes_that_do_not_go_together_raise(grids, lists, samples, size):
     with failing(ErrorKind.NOT_AN_AXIS):
         read_axes(grids, lists, samples, size, None)
+
+
+def test_values_of_an_array_were_asked_for_their_truth():
+    assert listed("m", np.array([1.0, 2.5])) == listed("m", [1.0, 2.5])
+    with failing(ErrorKind.NOT_AN_AXIS):
+        listed("m", np.array([]))
 
 
 def test_no_axis_raises():

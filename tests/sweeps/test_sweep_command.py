@@ -221,7 +221,7 @@ def test_a_full_disk_is_one_sentence_and_no_truncated_part(tmp_path):
 
 
 def test_python_gets_a_lazy_dataset_and_leaves_nothing(tmp_path):
-    swept = holonom.sweep(holonom.load(CRANE), grid={"m": (50, 500, 6)}, values={"c": [0, 10, 40]}, keep=["final", "x"])
+    swept = holonom.sweep(holonom.load(CRANE), grid={"m": (50, 500, 6)}, values={"c": [0, 10, 40]}, keep="final,x")
     assert swept.dataset.count_rows() == 18
     frame = swept.to_pandas()
     assert frame.loc[4, "c"] == 10
