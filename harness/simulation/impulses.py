@@ -56,7 +56,7 @@ def moves_behind_impulse(
     behind_it, change_behind = momenta(after, new, at_constant_velocity)
     here, independent = after.matrices.independent(t, new), list(problem.independent)
     factors = factored_constraints(here.mass, here.jacobian)
-    impulses = factors.multipliers(before_it - behind_it, np.zeros(len(independent)))
+    _, impulses = factors.unknowns(before_it - behind_it, np.zeros(len(independent)))
     rows = [f"residual_rate[{beta + 1}]" for beta in independent]
     slopes = {
         f"J[{beta + 1},{s + 1}]": (s, impulse)
