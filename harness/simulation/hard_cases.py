@@ -29,7 +29,7 @@ STIFF = 1e5  # squares of frequencies, one in terms of another
 AT_REST = 1e-8  # squares of frequencies, relative to the largest, that differences do not distinguish from zero
 DIFFERENCE = 1e-5  # of nominal coordinates and velocities: the cube root of a double's rounding error
 DECAYED = 4.0  # times the length of a step, a rate of decay: what follows such a decay may take longer steps
-AT_ONCE = 32  # states whose matrices are in memory at a time
+AT_ONCE = 256  # states that are evaluated at a time
 
 
 class Difficulty(StrEnum):
@@ -140,12 +140,11 @@ def stiffness(at: MotionState) -> float:
         From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
         free, in the mass metric.
     """
-    here = at.here
-    free = _free_directions(here)
+    factored = _factored(at.here)
+    free = factored.free_directions()
     if not free.size:
         return 1.0
-    moves = np.concatenate([free, np.zeros_like(free)])
-    change = free.T @ here.mass @ _change_of_accelerations(at, moves)
+    change = _free_changes(at, factored, np.concatenate([free, np.zeros_like(free)]))
     if not np.isfinite(change).all():
         return 1.0
     squares = np.abs(np.linalg.eigvals(change))
@@ -167,13 +166,12 @@ def fastest_decay(at: MotionState) -> float:
         Per unit of time, zero if no decay rate exceeds its frequency. It follows from the derivatives of the
         accelerations with respect to coordinates and velocities.
     """
-    here = at.here
-    free = _free_directions(here)
+    factored = _factored(at.here)
+    free = factored.free_directions()
     if not free.size:
         return 0.0
     nothing, one = np.zeros_like(free), np.eye(free.shape[1])
-    moves = np.block([[free, nothing], [nothing, free]])
-    change = free.T @ here.mass @ _change_of_accelerations(at, moves)
+    change = _free_changes(at, factored, np.block([[free, nothing], [nothing, free]]))
     if not np.isfinite(change).all():
         return 0.0
     exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
@@ -185,36 +183,26 @@ def _is_slowed(start: MotionState, end: MotionState, steps: int) -> bool:
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
-def _free_directions(at: Matrices) -> Matrix:
-    """Return an orthonormal basis, in the mass metric, of the constraints' null space."""
-    weighted = weighted_constraints(at.mass, at.jacobian)
-    left, values, _ = np.linalg.svd(weighted.directions)
-    return weighted.unweighted(left[:, rank_of(values) :].T).T
+def _factored(at: Matrices) -> DependentConstraints:
+    return DependentConstraints(
+        at.mass, at.jacobian, rank_of(weighted_constraints(at.mass, at.jacobian).singular_values())
+    )
 
 
-def _change_of_accelerations(at: MotionState, moves: Matrix) -> Matrix:
-    """Return derivatives of the accelerations along moves of the state.
+def _free_changes(at: MotionState, factored: DependentConstraints, moves: Matrix) -> Matrix:
+    """Return derivatives of the accelerations along moves of the state, in the free directions F.
 
-    They have shape (n, k), the moves (2n, k). A a - J^T lambda = h, J a = -c, differentiated: one factorization solves
-    for all of them.
+    They have shape (n - r, k), the moves (2n, k). As J F = 0, the derivative of A a - J^T lambda = h gives
+    F^T A da = F^T d(h - A a + J^T lambda), a and lambda unchanged on the right.
     """
-    here, matrices = at.here, at.matrices
-    rank = rank_of(weighted_constraints(here.mass, here.jacobian).singular_values())
-    factored = DependentConstraints(here.mass, here.jacobian, rank)
-    accelerations, multipliers = factored.unknowns(here.force, here.curvature)
-    changes = []
-    lengths = DIFFERENCE / np.max(np.abs(moves) / matrices.nominal.state[:, None], axis=0)
+    found = factored.unknowns(at.here.force, at.here.curvature)
+    lengths = DIFFERENCE / np.max(np.abs(moves) / at.matrices.nominal.state[:, None], axis=0)
     steps = (lengths * moves).T
-    for some in np.array_split(steps, -(-len(steps) // AT_ONCE)):
-        ahead, behind = (
-            (
-                moved.force - moved.mass @ accelerations + multipliers @ moved.jacobian,
-                moved.curvature + moved.jacobian @ accelerations,
-            )
-            for moved in (matrices(at.t, at.state + some), matrices(at.t, at.state - some))
-        )
-        changes += map(factored.accelerations, ahead[0] - behind[0], ahead[1] - behind[1])
-    return np.array(changes).T / (2 * lengths)
+    changes = [
+        at.matrices.unbalanced(at.t, at.state + some, *found) - at.matrices.unbalanced(at.t, at.state - some, *found)
+        for some in np.array_split(steps, -(-len(steps) // AT_ONCE))
+    ]
+    return factored.free_directions().T @ np.concatenate(changes, axis=1) / (2 * lengths)
 
 
 def _mass_ratio(at: Matrices) -> float:

@@ -88,6 +88,27 @@ class MotionMatrices:
         """
         return self._layout.matrices_at_each(self._evaluate(self._inputs(t, state.T)).T)
 
+    def unbalanced(self, t: float, states: Matrix, accelerations: Vector, multipliers: Vector) -> Matrix:
+        """Return h - A a + J^T lambda at k states for the same accelerations and multipliers.
+
+        Its cost grows with the entries of A and J that are not zero by structure.
+
+        Parameters
+        ----------
+        t : float
+            Time of the states.
+        states : ndarray, shape (k, 2n)
+        accelerations : ndarray, shape (n,)
+            a.
+        multipliers : ndarray, shape (g,)
+            lambda.
+
+        Returns
+        -------
+        ndarray, shape (n, k)
+        """
+        return self._layout.unbalanced(self._evaluate(self._inputs(t, states.T)), accelerations, multipliers)
+
     def independent(self, t: float, state: Vector) -> Matrices:
         """Evaluate the matrices of the independent constraints.
 
@@ -143,6 +164,25 @@ class _Layout:
         starts = {name: part.start for name, (part, _) in zip(shapes, self._parts, strict=True)}
         self._size = int(ends[-1])
         self._places = np.array([_place(name, starts, n) for name in problem.matrices.outputs], dtype=int)
+
+    def unbalanced(self, outputs: Numbers, accelerations: Vector, multipliers: Vector) -> Matrix:
+        """Return h - A a + J^T lambda of the program's outputs, shape (outputs, k)."""
+        n = len(accelerations)
+        mass, force, jacobian = (self._within(part) for part, _ in self._parts[:3])
+        entries = np.concatenate([mass[0], force[0], jacobian[0]])
+        rows = np.concatenate([mass[1] // n, force[1], jacobian[1] % n])
+        ones = np.ones(len(force[0]))
+        weights = np.concatenate([-accelerations[mass[1] % n], ones, multipliers[jacobian[1] // n]])
+        order = np.argsort(rows, kind="stable")
+        present, starts = np.unique(rows[order], return_index=True)
+        sums = np.zeros((n, outputs.shape[1]))
+        sums[present] = np.add.reduceat(weights[order, None] * outputs[entries[order]], starts, axis=0)
+        return sums
+
+    def _within(self, part: slice) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Return which outputs are in a part, and their places in it."""
+        entries = np.flatnonzero((part.start <= self._places) & (self._places < part.stop))
+        return entries, self._places[entries] - part.start
 
     def matrices(self, outputs: Numbers) -> Matrices:
         """Return the program's outputs, shape (outputs, ...), as matrices (..., ...)."""

@@ -286,6 +286,15 @@ class DependentConstraints(FactoredConstraints):
         """
         return np.abs(self._weighted.scale * residual)
 
+    def free_directions(self) -> Matrix:
+        """Return an orthonormal basis, in the mass metric, of the null space of J.
+
+        Returns
+        -------
+        ndarray, shape (n, n - r)
+        """
+        return self._weighted.unweighted(self._complement.T).T
+
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Return accelerations, across Q by the forces and along Q by the constraints.
 
