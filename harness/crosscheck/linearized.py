@@ -177,7 +177,7 @@ class DescribedEquations:
 
     @property
     def switches(self) -> bool:
-        """Whether signs change the equations or the laws."""
+        """True if signs change the equations or the laws."""
         laws = map(exact, self.motion.scene.control_law.values())
         return any(each.has(*SWITCHING) for each in (*self._smooth, *laws))
 
@@ -273,7 +273,7 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
 
 
 def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
-    """Yield the conditions on the state, the basis and the matrices of a linear system.
+    """Yield the conditions on a linear system: state, basis and matrices.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The number of solutions of polynomial equations, and exact values written as text.
+"""Number of solutions of polynomial equations, and exact values as text.
 
 Let l be a linear form whose values in all complex solutions differ, as one with random coefficients does. Then a
 solution is real if and only if its value of l is. These values are the roots of the only polynomial in l alone in a

@@ -1,4 +1,4 @@
-"""Verdicts on results of `linearize`, `linearize-along`, `equilibria` and `series` in JSON documents.
+"""Verdicts on JSON documents of stability and series.
 
 Derivatives of power series by p are checked without differentiation: the series q + e dq/dp must satisfy the equations
 for p + e to first order, which a central difference shows.
@@ -35,7 +35,7 @@ Content = Mapping[str, Any]
 
 
 def read_result(file: Path) -> Content:
-    """Read a JSON document of `linearize`, `linearize-along`, `equilibria` or `series`.
+    """Read a JSON document that `check --result` takes.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def verify_result(description: Description, content: Content) -> EquationVerdict
 
 
 def _unchecked(kind: Publication, content: Content) -> str:
-    """Return what of a document agrees without a check."""
+    """Return the fields of a document that are not checked."""
     match kind:
         case Publication.LINEARIZED_ALONG:
             return "not checked: error" + (", stability of free deviations" if content["free"] else "")

@@ -190,7 +190,7 @@ def _factored(at: Matrices) -> DependentConstraints:
 
 
 def _free_changes(at: MotionState, factored: DependentConstraints, moves: Matrix) -> Matrix:
-    """Return derivatives of the accelerations along moves of the state, in the free directions F.
+    """Return derivatives of accelerations in the free directions F, along moves.
 
     They have shape (n - r, k), the moves (2n, k). As J F = 0, the derivative of A a - J^T lambda = h gives
     F^T A da = F^T d(h - A a + J^T lambda), a and lambda unchanged on the right.

@@ -89,7 +89,7 @@ class MotionMatrices:
         return self._layout.matrices_at_each(self._evaluate(self._inputs(t, state.T)).T)
 
     def unbalanced(self, t: float, states: Matrix, accelerations: Vector, multipliers: Vector) -> Matrix:
-        """Return h - A a + J^T lambda at k states for the same accelerations and multipliers.
+        """Return h - A a + J^T lambda at k states, a and lambda the same.
 
         Its cost grows with the entries of A and J that are not zero by structure.
 

@@ -135,7 +135,7 @@ def test_a_wrong_result_disagrees(result, seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_wrong_number_of_solutions_disagrees(seed):
-    """Random potentials of degree four in each coordinate, with a claim that leaves out or adds a solution."""
+    """Random potentials of degree four in each coordinate, with a count that leaves out or adds a solution."""
     draw = random.Random(seed)
     energy = " + ".join(f"{q}^4/4 + {draw.randint(-9, 9)}*{q}^3/7 - {draw.randint(1, 9)}*{q}^2" for q in "xy")
     scene = holonom.system(
