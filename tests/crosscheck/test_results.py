@@ -76,10 +76,14 @@ VERIFIED = {  # entries of each document that a verdict is about
     "equilibria": ("count", "complete", "found"),
     "series": ("order", "sensitivities"),
 }  # fmt: skip
+LONG = "linearisation along a motion", "period of a forced motion"
 ROUNDING = 1e-6  # numbers below are rounding errors; a change in the seventh digit is one, too
 
 
-@pytest.fixture(scope="module", params=RESULTS)
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, marks=pytest.mark.long if name in LONG else ()) for name in RESULTS],
+)
 def result(request):
     text, made = RESULTS[request.param]
     scene = holonom.system(text)
@@ -117,7 +121,7 @@ def changed(value, draw):
     return str(wrong) if isinstance(value, str) else float(wrong)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 5))])
 def test_a_wrong_result_disagrees(result, seed):
     description, content, verified = result
     draw = random.Random(seed)
@@ -133,7 +137,7 @@ def test_a_wrong_result_disagrees(result, seed):
         assert found.verdict is Verdict.DISAGREES, (path, last, part[last])
 
 
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 3))])
 def test_a_wrong_number_of_solutions_disagrees(seed):
     """Random potentials of degree four in each coordinate, with a count that leaves out or adds a solution."""
     draw = random.Random(seed)

@@ -206,7 +206,10 @@ def test_the_impulse_of_a_support_that_halts():
         assert motion[f"d(y, {name})"] == pytest.approx(np.sin(phi) * change, abs=1e-12), name
 
 
-@pytest.mark.parametrize(("name", "value"), [("a", 2), ("m", 1), ("M", 1.5), ("T", 1), ("e", 0)])
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("a", 2), *(pytest.param(*each, marks=pytest.mark.long) for each in [("m", 1), ("M", 1.5), ("T", 1), ("e", 0)])],
+)
 def test_differences_of_a_motion_with_an_impulse(name, value):
     """The energy contains the velocity of the support, so momenta jump with it."""
     scene, step = holonom.system(KICKED), 1e-5
