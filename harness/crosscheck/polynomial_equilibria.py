@@ -26,6 +26,7 @@ OPERATIONS = {
     ast.USub: operator.neg,
 }
 FUNCTIONS = {"sqrt": sp.sqrt, "acos": sp.acos}
+LARGEST_POWER = 100  # in an exact value: 9**9**9 takes all time and memory
 ROOT = sp.Symbol("x")
 
 
@@ -94,7 +95,10 @@ def _read(part: ast.expr, names: Mapping[str, sp.Expr]) -> sp.Expr:
         case ast.Name(id=name):
             return names[name]
         case ast.BinOp(left, operation, right):
-            return OPERATIONS[type(operation)](_read(left, names), _read(right, names))
+            sides = _read(left, names), _read(right, names)
+            if isinstance(operation, ast.Pow) and not abs(sides[1]) <= LARGEST_POWER:
+                raise ValueError(part)
+            return OPERATIONS[type(operation)](*sides)
         case ast.UnaryOp(operation, operand):
             return OPERATIONS[type(operation)](_read(operand, names))
         case ast.Call(func=ast.Name(id="CRootOf"), args=[polynomial, index]):

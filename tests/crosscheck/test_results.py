@@ -164,6 +164,7 @@ def test_exact_values_are_read_and_put_into_the_equations():
         ("x", f"-({exact['x']})"),
         ("x", repr(content["found"][0]["coordinates"]["x"])),
         ("x", "__import__('os').getpid()"),
+        ("x", "9**9**9"),
         ("phi", f"{exact['phi']} + 1/10**20"),
         ("y", "1"),
     ):
