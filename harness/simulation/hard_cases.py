@@ -140,11 +140,11 @@ def stiffness(at: MotionState) -> float:
         From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
         free, in the mass metric.
     """
-    factored = _factored(at.here)
+    factored = DependentConstraints(at.here.mass, at.here.jacobian)
     free = factored.free_directions()
     if not free.size:
         return 1.0
-    change = _free_changes(at, factored, np.concatenate([free, np.zeros_like(free)]))
+    change = _free_changes(at, factored, free, np.concatenate([free, np.zeros_like(free)]))
     if not np.isfinite(change).all():
         return 1.0
     squares = np.abs(np.linalg.eigvals(change))
@@ -166,12 +166,12 @@ def fastest_decay(at: MotionState) -> float:
         Per unit of time, zero if no decay rate exceeds its frequency. It follows from the derivatives of the
         accelerations with respect to coordinates and velocities.
     """
-    factored = _factored(at.here)
+    factored = DependentConstraints(at.here.mass, at.here.jacobian)
     free = factored.free_directions()
     if not free.size:
         return 0.0
     nothing, one = np.zeros_like(free), np.eye(free.shape[1])
-    change = _free_changes(at, factored, np.block([[free, nothing], [nothing, free]]))
+    change = _free_changes(at, factored, free, np.block([[free, nothing], [nothing, free]]))
     if not np.isfinite(change).all():
         return 0.0
     exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
@@ -183,13 +183,7 @@ def _is_slowed(start: MotionState, end: MotionState, steps: int) -> bool:
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
-def _factored(at: Matrices) -> DependentConstraints:
-    return DependentConstraints(
-        at.mass, at.jacobian, rank_of(weighted_constraints(at.mass, at.jacobian).singular_values())
-    )
-
-
-def _free_changes(at: MotionState, factored: DependentConstraints, moves: Matrix) -> Matrix:
+def _free_changes(at: MotionState, factored: DependentConstraints, free: Matrix, moves: Matrix) -> Matrix:
     """Return derivatives of accelerations in the free directions F, along moves.
 
     They have shape (n - r, k), the moves (2n, k). As J F = 0, the derivative of A a - J^T lambda = h gives
@@ -202,7 +196,7 @@ def _free_changes(at: MotionState, factored: DependentConstraints, moves: Matrix
         at.matrices.unbalanced(at.t, at.state + some, *found) - at.matrices.unbalanced(at.t, at.state - some, *found)
         for some in np.array_split(steps, -(-len(steps) // AT_ONCE))
     ]
-    return factored.free_directions().T @ np.concatenate(changes, axis=1) / (2 * lengths)
+    return free.T @ np.concatenate(changes, axis=1) / (2 * lengths)
 
 
 def _mass_ratio(at: Matrices) -> float:

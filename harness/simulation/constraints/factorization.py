@@ -246,14 +246,15 @@ class IndependentConstraints(FactoredConstraints):
 
 
 class DependentConstraints(FactoredConstraints):
-    """Dependent constraints, factored by singular values up to the given rank.
+    """Dependent constraints, factored by singular values up to the rank.
 
     Arguments as for `factored_constraints`.
     """
 
-    def __init__(self, mass: Matrix, jacobian: Matrix, rank: int) -> None:
+    def __init__(self, mass: Matrix, jacobian: Matrix, rank: int | None = None) -> None:
         self._weighted = weighted_constraints(mass, jacobian)
         u, values, v = np.linalg.svd(self._weighted.directions)
+        rank = rank_of(values) if rank is None else rank
         self._basis, self._complement = u[..., :rank], u[..., rank:]
         # shape (r, g): transposed pseudo-inverse of C, W = Q C
         self._inverse = v[..., :rank, :] / values[..., :rank, None]

@@ -312,7 +312,7 @@ def long_run() -> dict:
 
 
 def truths() -> dict:
-    """What the register is measured against, by case."""
+    """Reference values of the register, by case."""
     return {
         "parallel_constraints": circling(),
         "constraint_given_twice": given_twice(10),
