@@ -15,7 +15,7 @@ have values independent of their arguments (`independent_functions`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 from typing import NamedTuple
 
@@ -109,9 +109,10 @@ def verify(comparison: Comparison, seed: str) -> CheckResult:
     """
     if not comparison.pairs:
         return CheckResult(Verdict.NOTHING, None, None)
-    if comparison.rounded and not _free_names(comparison):
-        return verify_rounded(comparison)
-    return _Verification(comparison, seed).result()
+    numbers = _pairs_of_numbers(comparison) if comparison.rounded else ()
+    others = tuple(pair for pair in comparison.pairs if pair not in numbers)
+    found = [verify_rounded(replace(comparison, pairs=numbers))] if numbers else []
+    return _weakest([*found, _Verification(replace(comparison, pairs=others), seed).result()] if others else found)
 
 
 def verify_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
@@ -129,7 +130,10 @@ def verify_all(comparisons: Sequence[Comparison], seed: str) -> CheckResult:
     CheckResult
         The weakest verdict of all.
     """
-    found = [verify(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)]
+    return _weakest([verify(comparison, f"{seed} {i}") for i, comparison in enumerate(comparisons)])
+
+
+def _weakest(found: Sequence[CheckResult]) -> CheckResult:
     order = (
         Verdict.DISAGREES,
         Verdict.UNDECIDED,
@@ -389,10 +393,27 @@ def verify_rounded(comparison: Comparison) -> CheckResult:
     return CheckResult(Verdict.AGREES, DIGITS, 1)
 
 
+def _pairs_of_numbers(comparison: Comparison) -> tuple[Pair, ...]:
+    """Return the pairs that contain no free symbol."""
+    known = _numbers(comparison).keys()
+    return tuple(
+        pair for pair in comparison.pairs if pair.derived.free_symbols | pair.independent.free_symbols <= known
+    )
+
+
+def _numbers(comparison: Comparison) -> dict[sp.Symbol, sp.Expr]:
+    """Return the meanings that contain no free symbol, in order of use."""
+    found: dict[sp.Symbol, sp.Expr] = {}
+    for symbol, meaning in {**comparison.rounded, **comparison.given}.items():
+        if meaning.free_symbols <= found.keys():
+            found[symbol] = meaning
+    return found
+
+
 def _rounded_values(comparison: Comparison) -> Values:
     values: dict[sp.Symbol, Number | None] = {}
     with mp.workdps(CONFIRMING_DIGITS):
-        for symbol, meaning in {**comparison.rounded, **comparison.given}.items():
+        for symbol, meaning in _numbers(comparison).items():
             values[symbol] = Steps([meaning]).at(values)[0]
     return values
 

@@ -180,3 +180,16 @@ def test_a_rounded_number_is_compared_to_fifty_digits() -> None:
 
     assert verdict(60) is Verdict.AGREES
     assert verdict(48) is Verdict.DISAGREES
+
+
+def test_rounded_numbers_beside_free_symbols_are_compared_to_fifty_digits() -> None:
+    """The check of a slide that turns disagreed, by the rounding of its Euler parameters."""
+
+    def verdict(digits: int, side: sp.Expr) -> Verdict:
+        rounded = {X: sp.Rational(int(sp.sqrt(2).n(80) * 10**digits), 10**digits)}
+        pairs = (Pair("x", sp.Integer(0), X**2 - 2), Pair("y", Y + X, side))
+        return verify(Comparison(pairs, given=rounded, rounded=rounded), "seed").verdict
+
+    assert verdict(60, X + Y) is Verdict.AGREES
+    assert verdict(60, X + 2 * Y) is Verdict.DISAGREES
+    assert verdict(48, X + Y) is Verdict.DISAGREES
