@@ -118,7 +118,7 @@ def _frames(film: Film, suffix: str) -> bytes:
         from matplotlib.animation import FFMpegWriter, PillowWriter
 
         (left, right), (low, high) = extents(film.shapes, film.numbers)
-        room = MARGIN * max(right - left, high - low)
+        room = MARGIN * (max(right - left, high - low) or 1)
         height = INCHES * min(max((high - low) / max(right - left, 1e-300), 0.25), 1.5)
         figure = new_figure(INCHES, height)
         axes = figure.subplots()

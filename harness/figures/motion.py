@@ -82,7 +82,7 @@ def motion_figure(simulation: "Simulation", curves: Sequence[str] | None = None)
         figure = new_figure(WIDTH, HEIGHT_OF_PANEL * len(drawn))
         panels = figure.subplots(len(drawn), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (title, curves) in zip(panels, drawn, strict=True):
-            _draw(panel, simulation.times.astype(float), curves)
+            _draw(panel, simulation.times.astype(float), curves, simulation.report.joints)
             panel.set_ylabel(gettext("%(quantity)s\n(units of the scene)", quantity=title))
         panels[0].set_title(translated(simulation.title))
         panels[-1].set_xlabel(gettext("t (units of the scene)"))
@@ -126,11 +126,12 @@ def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
     return [{name: curves[name] for name in curves if name in part} for part in parts]
 
 
-def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray]) -> None:
+def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray], joints: Mapping[str, str]) -> None:
     for index, (name, samples) in enumerate(curves.items()):
         line = LINES[index // len(PALETTE) % len(LINES)]
         colour = PALETTE[index % len(PALETTE)]
-        axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=with_symbols(name))
+        label = f"{with_symbols(name)} ({joints[name]})" if name in joints else with_symbols(name)
+        axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=label)
     columns = math.ceil(len(curves) / IN_A_COLUMN)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 

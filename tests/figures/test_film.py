@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import warnings
 from xml.etree import ElementTree
 
 import numpy as np
@@ -60,6 +61,14 @@ def test_a_gif_has_a_frame_for_each_time(motion, tmp_path):
     assert (tmp_path / "film.gif").read_bytes() == (tmp_path / "again.gif").read_bytes()
 
 
+def test_a_film_of_a_point_at_rest_has_a_size(tmp_path):
+    """Matplotlib warned of limits that are equal."""
+    rotor = "system : holonomic_system(parameters = [J], assembly(rotor(J, phi)))$"
+    scene = "scene : holonomic_scene(system, parameter_values = [J = 1], initial_state = [phi = 0, dot(phi) = 1])$"
+    with warnings.catch_warnings(action="error"):
+        holonom.system(rotor + scene).simulate(until=1, samples=2).film().save(tmp_path / "film.gif")
+
+
 def test_motions_without_a_picture_are_refused(motion, tmp_path):
     assert failure_of(lambda: motion.film().save(tmp_path / "film.avi")) is ErrorKind.NO_SUCH_FORMAT
     uneven = pendulum().simulate(until=1)
@@ -89,6 +98,7 @@ def labels(figure):
 def test_all_panels_have_a_legend_and_one_is_the_energy(motion):
     drawn = labels(motion_figure(motion))
     assert ["R[1]", "R[2]", "R[3]"] in drawn
+    assert ["λ₁ (hinge)", "λ₂ (hinge)"] in drawn
     assert ["energy"] in [[name for name in panel if name == "energy"] for panel in drawn]
     assert all(drawn)
 

@@ -66,6 +66,7 @@ def random_inputs(points: int) -> tuple[np.ndarray, ...]:
         ("pendulum.mac", ["m", "g"]),
         ("car_axis.mac", []),
         ("prescribed_tension.mac", []),
+        ("level_load.mac", []),
         ("spherical_pendulum.mac", []),
         ("andrews.mac", []),
     ],
@@ -76,6 +77,7 @@ def test_compilers_have_nothing_to_say(tmp_path, scene, parameters, c_compiler):
     assert (compiled.returncode, compiled.stderr) == (0, "")
     ran = run("./driver", directory=directory)
     assert ran.returncode == 0
+    assert ("pull = " in ran.stdout) == (scene == "level_load.mac")
     assert "nan" not in ran.stdout
 
 
