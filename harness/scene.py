@@ -221,17 +221,15 @@ def sweep(
     >>> found.statuses
     {'ok': 2}
     """
-    from .sweeps import axes
+    from .sweeps.axes import axes_of
     from .sweeps.outputs import read_quantities
     from .sweeps.run import run_sweep
 
     opened = scene if isinstance(scene, Scene) else load(scene)
-    varied = [axes.grid(name, *numbers) for name, numbers in (grid or {}).items()]
-    varied += [axes.listed(name, numbers) for name, numbers in (values or {}).items()]
-    drawn = [axes.sample(name, text) for name, text in (sample or {}).items()]
+    axes = axes_of(grid, values, sample, size, seed)
     request = opened._request(options.pop("solve"))
     outputs = read_quantities([keep] if isinstance(keep, str) else keep)
-    wanted = SweepRequest(axes.make_axes(varied, drawn, size, seed), outputs, **options)
+    wanted = SweepRequest(axes, outputs, **options)
     directory = OwnDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
     found = run_sweep(opened._source, request, wanted, folder, opened.limits)

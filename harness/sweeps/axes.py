@@ -6,12 +6,13 @@ turn. Row i is a function of i and the seed alone: random numbers come in blocks
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
 from itertools import chain
-from typing import TypeVar
+from numbers import Integral
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,7 @@ BLOCK = 1024  # members of a sample that one generator draws
 MOST_ROWS = 10**12
 NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?:/\d+)?"
 EXAMPLES = {"--grid": "m=50:500:1000", "--list": "m=1,2,5", "--sample": "'m=normal(100,5)'"}
+ARGUMENTS = {"grid": "{'m': (50, 500, 1000)}", "values": "{'m': [1, 2, 5]}", "sample": "{'m': 'normal(100,5)'}"}
 Axis = TypeVar("Axis")
 DRAWN = re.compile(rf"(\w+)\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
 
@@ -212,6 +214,60 @@ def _read(option: str, read: Callable[[str], Axis], texts: Iterable[str]) -> Ite
             raise HolonomError(ErrorKind.MALFORMED_AXIS, detail=error.detail, option=option, example=example) from None
 
 
+def axes_of(
+    grids: Mapping[str, Collection[Number]] | None,
+    lists: Mapping[str, Collection[Number]] | None,
+    samples: Mapping[str, str] | None,
+    size: int | None,
+    seed: int | None,
+) -> Axes:
+    """Return the axes of a sweep from the arguments of `holonom.sweep`.
+
+    Parameters
+    ----------
+    grids : mapping of str to (first, last, count), or None
+        Equally spaced values.
+    lists : mapping of str to collection, or None
+        Lists of values.
+    samples : mapping of str to str, or None
+        Distributions, as for `sample`.
+    size, seed : int or None
+        As for `make_axes`.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    HolonomError
+        An argument is not of its form, or as `make_axes`.
+    """
+    values = [grid(name, *numbers) for name, numbers in _entries("grid", _is_triple, grids)]
+    values += [listed(name, numbers) for name, numbers in _entries("values", _is_list, lists)]
+    drawn = [sample(name, text) for name, text in _entries("sample", lambda each: isinstance(each, str), samples)]
+    return make_axes(values, drawn, size, seed)
+
+
+def _entries(argument: str, well_formed: Callable[[Any], bool], given: Any) -> Iterable[tuple[str, Any]]:
+    """Return the entries of a mapping. The error for a malformed one shows an example."""
+    if given is None:
+        return ()
+    if isinstance(given, Mapping) and all(isinstance(name, str) and well_formed(each) for name, each in given.items()):
+        return given.items()
+    text = f"{argument}={given!r}"
+    detail = translatable("%(text)s: this is not the form of the argument", text=text)
+    raise HolonomError(ErrorKind.MALFORMED_AXIS, detail=detail, example=f"{argument}={ARGUMENTS[argument]}")
+
+
+def _is_list(given: Any) -> bool:
+    return isinstance(given, Collection) and not isinstance(given, str | Mapping)
+
+
+def _is_triple(given: Any) -> bool:
+    return _is_list(given) and len(given) == 3
+
+
 def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
     """Return the axes of a sweep.
 
@@ -231,8 +287,14 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     Raises
     ------
     HolonomError
-        If a parameter is varied twice or none is, or if there are too many rows.
+        If a parameter is varied twice or none is, if there are too many rows, or if size or seed is no such number.
     """
+    for name, given, least in (("size", size, 1), ("seed", seed, 0)):
+        if given is not None and not (isinstance(given, Integral) and given >= least):
+            detail = translatable(
+                "%(name)s=%(given)s: expected an integer from %(least)s on", name=name, given=repr(given), least=least
+            )
+            raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=detail)
     names = [axis.name for axis in chain(values, samples)]
     if not names:
         raise HolonomError(ErrorKind.NOTHING_VARIES)

@@ -99,8 +99,8 @@ class Copy:
         shutil.copy(ROOT / "pyproject.toml", directory)
         (directory / "site").mkdir()
         (directory / "site" / "holonom").symlink_to(directory / "harness")  # before the package that is installed
-        none = str(directory / "pyproject.toml")  # no directory, so no image of Maxima: it would serve one test
-        own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1", "XDG_CACHE_HOME": none}
+        own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1"}
+        own["XDG_CACHE_HOME"] = str(directory / "cache")  # images of Maxima with mutants
         self.environment = os.environ | own
 
     def failing(self, *tests: str) -> str:

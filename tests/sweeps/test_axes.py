@@ -5,7 +5,7 @@ import pytest
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.sweeps.axes import listed, read_axes
+from holonom.sweeps.axes import axes_of, listed, read_axes
 
 
 def test_the_last_parameter_varies_fastest():
@@ -72,6 +72,34 @@ def test_values_of_an_array_were_asked_for_their_truth():
     assert listed("m", np.array([1.0, 2.5])) == listed("m", [1.0, 2.5])
     with failing(ErrorKind.NOT_AN_AXIS):
         listed("m", np.array([]))
+
+
+@pytest.mark.parametrize(
+    ("grids", "lists", "samples"),
+    [
+        ({"m": (1, 2)}, None, None),
+        ([1], None, None),
+        ({"m": "1:2"}, None, None),
+        ({1: (1, 2, 3)}, None, None),
+        (None, {"m": 2}, None),
+        (None, {"m": "1,2"}, None),
+        (None, None, {"m": (0, 1)}),
+    ],
+)
+def test_an_argument_of_another_form_raises(grids, lists, samples):
+    with failing(ErrorKind.MALFORMED_AXIS):
+        axes_of(grids, lists, samples, None, None)
+
+
+@pytest.mark.parametrize(("size", "seed"), [(0, None), (-1, None), (1.5, None), (3, -1), (3, 0.5), (3, "x")])
+def test_a_size_or_seed_that_is_no_such_number_raises(size, seed):
+    with failing(ErrorKind.NOT_AN_AXIS):
+        axes_of(None, None, {"m": "normal(0,1)"}, size, seed)
+
+
+def test_arguments_and_options_give_the_same_axes():
+    options = read_axes(["m=1:2:3"], ["c=1,2"], ["k=normal(0,1)"], 5, 7)
+    assert axes_of({"m": (1, 2, 3)}, {"c": [1, 2]}, {"k": "normal(0,1)"}, 5, 7) == options
 
 
 def test_no_axis_raises():
