@@ -58,6 +58,7 @@ from .zeros import ZERO, Crossing
 
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
+NEAR = 1e-6  # share of its changes that a determinant has at a paradox, towards which steps become too short
 NOT_UNIQUE = translatable(
     "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
 )
@@ -253,7 +254,7 @@ class HybridMotion:
         if self.problem.switching is None:
             yield from mode.integrate(stop)
             return
-        for step in mode.integrate(stop):
+        for step in self._steps(stop):
             crossing = mode.switching_functions.first_crossing(step, self._left)
             if crossing is None:
                 yield step
@@ -266,6 +267,22 @@ class HybridMotion:
             time_point = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
             self._switch({**mode.pattern, **changes}, list(changes), self.time, self.state.copy(), ())
+
+    def _steps(self, stop: Any) -> Iterator[Step]:
+        """Yield steps of the mode. An error names the paradox that the motion comes near."""
+        mode = self.mode
+        try:
+            yield from mode.integrate(stop)
+        except HolonomError as error:
+            if error.kind is ErrorKind.NO_WAY_ON and self._nears_paradox():
+                self._reject(self.time, NOT_UNIQUE)
+            raise
+
+    def _nears_paradox(self) -> bool:
+        """Return True if accelerations are hardly unique, so that multipliers grow without bound."""
+        functions = [function for _, function in self._unique(self.mode.pattern)] if self.problem.reacting else []
+        at = self._inputs(self.time, self.state)
+        return any(abs(f(at)[0]) <= NEAR * self._changes(f, self.time, self.state) for f in functions)
 
     # ---- releases ----
 
@@ -488,13 +505,16 @@ class HybridMotion:
 
         Its rounding is relative to its changes with the state and the time.
         """
-        function = self._function(name, sign, pattern)
+        changes = self._changes(self._function(name, sign, pattern), t, state)
+        return abs(self._output(name, sign, pattern, t, state)) <= ZERO * changes
+
+    def _changes(self, function: Evaluation, t: Any, state: Numbers) -> float:
+        """Return the changes of a function with the state and the time, by their nominal sizes."""
 
         def values(times: Numbers, states: Numbers) -> Numbers:
             return function(self._inputs(times, states))
 
-        changes = first_order_changes(values, np.array([t]), state[:, None], self.nominal)
-        return abs(self._output(name, sign, pattern, t, state)) <= ZERO * changes[0, 0]
+        return first_order_changes(values, np.array([t]), state[:, None], self.nominal)[0, 0]
 
     def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
         what = name, sign.name, frozenset(pattern.items())

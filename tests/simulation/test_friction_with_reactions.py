@@ -81,8 +81,15 @@ def test_a_sliding_rod_is_followed_up_to_the_paradoxes_of_painleve_and_not_into_
         else:
             with failing(ErrorKind.NO_WAY_ON, "t = 0", "Painleve"):
                 scene.simulate(until=0.001, samples=2)
-    with failing(ErrorKind.NO_WAY_ON):
+    with failing(ErrorKind.NO_WAY_ON, "Painleve"):
         of_text(ROD.replace("MU", str(mu)).replace("PHI", repr(last + 0.01))).simulate(until=1)
+
+
+def test_a_rod_that_jams_names_the_paradox():
+    """Steps became too short, with no word of the multiplier that grows without bound."""
+    scene = of_text(ROD.replace("MU", "2").replace("PHI", "6/10").replace("dot(phi) = -1", "dot(phi) = 8"))
+    with failing(ErrorKind.NO_WAY_ON, "Painleve"):
+        scene.simulate(until=1)
 
 
 def test_a_rod_with_less_friction_than_four_thirds_has_no_paradox():
