@@ -7,6 +7,7 @@ command that started the sweep writes the files. So the result does not depend o
 import logging
 import pickle
 import re
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, nullcontext
@@ -14,7 +15,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
-from ..failures import ErrorKind, HolonomError
+from ..failures import ErrorKind, HolonomError, HolonomWarning
 from ..language import translatable
 from ..simulation.evaluation import one_blas_thread
 from .dataset import Chunk, part_of
@@ -127,7 +128,7 @@ def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Tak
     from distributed import as_completed
 
     written = pickle.dumps(plan)
-    workers = max(1, len(client.scheduler_info(n_workers=-1)["workers"]))
+    workers = _workers_of(client)
     waiting = _tasks(chunks, workers)
     doing = {_submitted(client, written, task): task for task in islice(waiting, AHEAD * workers)}
     arriving = as_completed(list(doing), with_results=False)
@@ -138,6 +139,15 @@ def _compute_by(client: "Client", plan: Plan, chunks: Sequence[Chunk], take: Tak
             following = _submitted(client, written, task)
             doing[following] = task
             arriving.add(following)
+
+
+def _workers_of(client: "Client") -> int:
+    """Return the number of workers, one if the first has yet to come."""
+    if workers := len(client.scheduler_info(n_workers=-1)["workers"]):
+        return workers
+    address = client.scheduler.address
+    warnings.warn(f"the scheduler has no workers; waiting for `dask worker {address}`", HolonomWarning, stacklevel=2)
+    return 1
 
 
 def _tasks(chunks: Sequence[Chunk], workers: int) -> Iterator[Sequence[Chunk]]:

@@ -88,17 +88,18 @@ def test_a_killed_command_leaves_whole_parts_and_the_same_command_the_rest(undis
     assert rows(tmp_path / "runs").equals(rows(undisturbed))
 
 
-def test_a_running_scheduler_is_used_and_its_end_reported(undisturbed, tmp_path):
+def test_a_scheduler_s_workers_are_waited_for_and_used_and_its_end_reported(undisturbed, tmp_path):
     file = tmp_path / "scheduler.json"
     dask = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--scheduler-file", str(file), "--no-dashboard"]
     work = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", str(file), "--nthreads", "1"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": tmp_path}
     scheduler = subprocess.Popen([*dask, "--host", "127.0.0.1", "--port", "0"], **quiet)
     assert soon(file.exists)
+    address = json.loads(file.read_text())["address"]
+    process = begun(tmp_path / "runs", "--dask", address)
+    assert f"dask worker {address}" in process.stderr.readline()  # it waits for one
     worker = subprocess.Popen([*work, "--no-dashboard", "--death-timeout", "60"], **quiet)
     try:
-        address = json.loads(file.read_text())["address"]
-        process = begun(tmp_path / "runs", "--dask", address)
         assert soon(lambda: parts(tmp_path / "runs") > 3)
         scheduler.kill()
         _, said = process.communicate(timeout=200)
