@@ -279,7 +279,7 @@ class HybridMotion:
             raise
 
     def _nears_paradox(self) -> bool:
-        """Return True if accelerations are hardly unique, so that multipliers grow without bound."""
+        """Return True if accelerations are hardly unique: multipliers grow."""
         functions = [function for _, function in self._unique(self.mode.pattern)] if self.problem.reacting else []
         at = self._inputs(self.time, self.state)
         return any(abs(f(at)[0]) <= NEAR * self._changes(f, self.time, self.state) for f in functions)
@@ -509,7 +509,7 @@ class HybridMotion:
         return abs(self._output(name, sign, pattern, t, state)) <= ZERO * changes
 
     def _changes(self, function: Evaluation, t: Any, state: Numbers) -> float:
-        """Return the changes of a function with the state and the time, by their nominal sizes."""
+        """Return the changes of a function by nominal changes of state and time."""
 
         def values(times: Numbers, states: Numbers) -> Numbers:
             return function(self._inputs(times, states))
