@@ -94,7 +94,6 @@ bench: setup ## Time the motion program, power series, simulations and sweeps ag
 
 pictures: setup ## Draw the README's pictures and run the notebooks again
 	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null
-	$(BIN)/python tests/benchmarks/radius.py examples/paper/radius.svg
 	$(BIN)/holonom stability --force --plot examples/hard/stability.svg > /dev/null
 	$(BIN)/holonom -q simulate examples/overhead_crane.mac --samples 61 --force --film examples/gallery/overhead_crane.svg
 	$(BIN)/holonom -q simulate examples/arm.mac --scene circle_scene --samples 61 --force --film examples/gallery/arm.svg

@@ -12,7 +12,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import IO, Any
 
-import yaml
 from babel.messages.catalog import Catalog, Message
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
@@ -21,7 +20,8 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 import holonom
-from holonom.companion.chapter import FENCE
+from holonom.companion import TEMPLATES
+from holonom.companion.chapter import head_of
 from holonom.companion.pages import WHITESPACE
 from holonom.error_messages import pattern_of
 from holonom.failures import ErrorKind
@@ -41,10 +41,15 @@ IN_MAXIMA = re.compile(
     rf'|"((?:Compared|Holds|Printed|What is)[^"]*\.)"'  # notes on the print
 )
 REFUSAL = re.compile(rf"^  \['\w+, {STRING},\s+((?:{STRING}[,\s]*)+)\]", re.MULTILINE)
+JINJA = {
+    **{name: str(value).lower() for name, value in WHITESPACE.items()},
+    "extensions": "jinja2.ext.i18n",
+    "silent": "false",
+}
 SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
 EXPECTED = {
     "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
-    "marks": re.compile(r"<[^>]+>"),
+    "marks": re.compile(r"<[^>!]+>"),
     "formulas": re.compile(r"\$[^$]+\$"),
     "code": re.compile(r"(?:\{\w+\})?`[^`]+`"),
 }
@@ -60,10 +65,11 @@ Found = Iterator[tuple[int, str, str, list[str]]]  # line, function, message, co
 def collected() -> Catalog:
     """The messages of the sources, in the order of their files."""
     catalog = Catalog(project=DOMAIN, charset="utf-8")
-    for file, method, options in _sources():
-        with file.open("rb") as text:
-            for _, message, comments, _ in extract(method, text, KEYWORDS, options=options):
-                catalog.add(message, None, [(_place(file), None)], auto_comments=comments)
+    for folder, pattern, method in SOURCES:
+        for file in sorted(folder.rglob(pattern)):
+            with file.open("rb") as text:
+                for _, message, comments, _ in extract(method, text, KEYWORDS, options=JINJA):
+                    catalog.add(message, None, [(_place(file), None)], auto_comments=comments)
     for kind in ErrorKind:
         for text in (kind.reason, *kind.hints):
             catalog.add(pattern_of(text), None, [("harness/failures.py", None)])
@@ -123,28 +129,12 @@ def _faults(message: Message) -> Iterator[str]:
 
 def _unchanged(pattern: re.Pattern, text: str) -> set[str]:
     """What a text has of a kind, without the words that it defines and the names of chapters."""
-    return {found for found in pattern.findall(text) if not found.startswith(("{dfn}", "{chapter}"))}
+    return {found for found in pattern.findall(text) if not found.startswith(("{index}", "{chapter}"))}
 
 
 def _english(message: Message) -> str:
     """The message, of one with a plural that."""
     return message.id if isinstance(message.id, str) else message.id[1]
-
-
-def _sources() -> Iterator[tuple[Path, Any, Mapping[str, Any]]]:
-    """The files that have messages, how each is read, and the options of that."""
-    pages = {name: str(value).lower() for name, value in WHITESPACE.items()}
-    for file in sorted(PACKAGE.rglob("*.html")):
-        yield file, "jinja2", {**pages, "extensions": "jinja2.ext.i18n", "silent": "false"}
-    for file in sorted(PACKAGE.rglob("companion/**/*.md")):
-        yield file, _in_markdown, pages
-    for file in sorted(PACKAGE.rglob("*.toml")):
-        yield file, _in_toml, {}
-    for file in sorted(PACKAGE.rglob("*.py")):
-        yield file, "python", {}
-    for folder in ("examples", "maxima"):
-        for file in sorted(shared(folder).rglob("*.mac")):
-            yield file, _in_maxima, {}
 
 
 def _place(file: Path) -> str:
@@ -167,16 +157,22 @@ def _in_maxima(file: IO[bytes], *others: Any, **options: Any) -> Found:
 def _in_markdown(file: IO[bytes], keywords: Any, tags: Any, options: Mapping[str, Any]) -> Found:
     """The messages in the pieces of templates within a page of the book or the manual."""
     text = file.read().decode()
-    head = {} if (begin := text.split(FENCE, 2))[0] else yaml.safe_load(begin[1])
+    head = head_of(text)
     values = [*head.get("values", {}).values(), *head.get("figures", {}).values(), *VALUE.findall(text)]
     pieces = [*SHOWN.findall(text), *(f"{{{{ {value} }}}}" for value in values)]
-    template = io.BytesIO("\n".join(pieces).encode())
-    yield from babel_extract(template, keywords, tags, {**options, "extensions": "jinja2.ext.i18n"})
+    yield from babel_extract(io.BytesIO("\n".join(pieces).encode()), keywords, tags, options)
+
+
+def _in_toml(file: IO[bytes], *others: Any, **options: Any) -> Found:
+    """What readers see of the data of the companion."""
+    content = tomllib.load(file)
+    for part in (*content.pop("exhibit", ()), *content.values()):
+        yield from ((0, "gettext", text, []) for key, text in part.items() if key in SHOWN_IN_TOML)
 
 
 def page_templates(folder: Path) -> dict[str, Catalog]:
     """The messages of the pages of the book and the manual, by the names of their catalogs."""
-    package, left_out = PACKAGE / "companion", ["reference", "chapters", "templates"]
+    package, left_out = PACKAGE / "companion", ["reference", "templates"]
     settings = {"exclude_patterns": left_out, "suppress_warnings": ["toc", "myst"]}
     with patch_docutils(package), docutils_namespace():
         Sphinx(package, package, folder, folder / "doctrees", "gettext", settings, status=None).build()
@@ -192,18 +188,16 @@ def _to_translate(file: Path) -> Catalog:
     return catalog
 
 
-def _in_toml(file: IO[bytes], *others: Any, **options: Any) -> Found:
-    """What readers see of the data of the companion."""
-    yield from ((0, "gettext", text, []) for text in _shown_in(tomllib.load(file)))
-
-
-def _shown_in(part: Any, key: str = "") -> Iterator[str]:
-    if key in SHOWN_IN_TOML:
-        yield part
-    for name, each in part.items() if isinstance(part, dict) else ():
-        yield from _shown_in(each, name)
-    for each in part if isinstance(part, list) else ():
-        yield from _shown_in(each)
+SOURCES = (
+    (PACKAGE, "*.html", "jinja2"),
+    (TEMPLATES, "*.svg", "jinja2"),
+    (TEMPLATES.parent, "*.md", _in_markdown),
+    (TEMPLATES, "*.toml", _in_toml),
+    (PACKAGE, "*.py", "python"),
+    (shared("examples"), "*.mac", _in_maxima),
+    (shared("maxima"), "*.mac", _in_maxima),
+)
+"""Folders, the files in them that have messages, and how each is read."""
 
 
 if __name__ == "__main__":

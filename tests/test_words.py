@@ -87,7 +87,6 @@ ALLOWED = {
         "tests/": "the file of the chapter with this title",
         "harness/companion/book/turn-the-knob.md": "its run, figure and form",
         "harness/companion/templates/knob.js": "its script",
-        "harness/companion/chapters/turn_the_knob.py": "the same",
     },
     r"go(?:es)? on|going on|went on": {
         "tests/test_sandbox.py": "text that a scene prints",

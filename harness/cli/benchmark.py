@@ -10,7 +10,7 @@ from ..options import options_of
 from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from .group import holonom
-from .options import asks_one_scene, present, runs_scenes, takes, writes_json
+from .options import asks_one_scene, present, publish, runs_scenes, takes, writes_json
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def accuracy(
     if plot_file is not None:
         from ..figures.benchmark import draw_study
 
-        draw_study(done, plot_file)
+        publish(draw_study(done), plot_file)
     return 0
 
 
@@ -77,7 +77,7 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     if plot_file is not None:
         from ..figures.benchmark import draw_stability
 
-        draw_stability(reports, plot_file)
+        publish(draw_stability(reports), plot_file)
     return FAILED if any(report.fails for report in reports) else 0
 
 

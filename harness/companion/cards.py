@@ -35,37 +35,13 @@ class Card:
     instances: tuple[Instance, ...]  # as derived: the first is shown, the others on request
 
 
-def derivation_cards(
-    numbers: Sequence[str],
-    derivations: Sequence[Derived],
-    printed: Iterable[PrintedEquation],
+System = Derived | tuple[Derived, str]  # a derivation, or one with the name of its scene
+
+
+def cards_for(
+    numbers: Sequence[str], systems: Sequence[System], printed: Sequence[PrintedEquation] = (), prefix: str = ""
 ) -> list[Card]:
-    """Cards of equations (1) to (11).
-
-    Parameters
-    ----------
-    numbers : sequence of str
-        Which ones. The cards come in the order of the first record.
-    derivations : sequence of Derived
-        The first has the equations that are shown, the others those shown on request.
-    printed : iterable of PrintedEquation
-        Equations of the paper.
-
-    Returns
-    -------
-    list of Card
-        Cards in the order of the first record.
-    """
-    return _cards(numbers, derivations[0], [_derivation_instances(each) for each in derivations], printed)
-
-
-def scene_cards(
-    numbers: Sequence[str],
-    scenes: Sequence[tuple[Derived, str]],
-    printed: Iterable[PrintedEquation],
-    prefix: str = "",
-) -> list[Card]:
-    """Return the cards of equations (10) and (12) to (19) of scenes.
+    """Return the cards of equations of systems or of their scenes.
 
     A prefix begins the anchors, where a page shows the cards of several scenes.
 
@@ -73,9 +49,10 @@ def scene_cards(
     ----------
     numbers : sequence of str
         Numbers of the equations.
-    scenes : sequence of tuple of Derived and str
-        Derivation and name of each scene.
-    printed : iterable of PrintedEquation
+    systems : sequence of Derived or of tuple of Derived and str
+        Derivations with equations (1) to (11), or scenes with (10) and (12) to (19). The first are shown, the others on
+        request.
+    printed : sequence of PrintedEquation
         Equations of the paper.
     prefix : str
         Beginning of the anchors.
@@ -83,9 +60,23 @@ def scene_cards(
     Returns
     -------
     list of Card
-        Cards in the order of the records.
+        Cards in the order of the first record.
     """
-    return _cards(numbers, scenes[0][0], [_scene_instances(*each) for each in scenes], printed, prefix)
+    found = [_derivation_instances(each) if isinstance(each, Derived) else _scene_instances(*each) for each in systems]
+    equations = {each.equation.id: each.equation for each in found[0] if each.equation.number in numbers}
+    first = systems[0] if isinstance(systems[0], Derived) else systems[0][0]
+    return [
+        Card(
+            place,
+            each.number,
+            each.name,
+            each.id,
+            bool(first.record.system.controls),
+            tuple(one for one in printed if (one.number, one.name) == (each.number, each.name)),
+            tuple(one for group in found for one in group if one.equation.id == each.id),
+        )
+        for place, each in zip(anchors(equations.values(), prefix), equations.values(), strict=True)
+    ]
 
 
 def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
@@ -102,27 +93,6 @@ def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
         Cards by anchor.
     """
     return {card.anchor: card for card in cards}
-
-
-def cards_of_scene(derived: Derived, numbers: Sequence[str], scene: str) -> list[Card]:
-    """Return cards of a scene's equations, none for prescribed reactions.
-
-    Parameters
-    ----------
-    derived : Derived
-        Derivation of the scene's file.
-    numbers : sequence of str
-        Numbers of the equations.
-    scene : str
-        Name of the scene, which begins the anchors.
-
-    Returns
-    -------
-    list of Card
-        Cards in the order of the record.
-    """
-    known = scene in {each.name for each in derived.record.scenes}
-    return scene_cards(numbers, [(derived, scene)], (), scene) if known else []
 
 
 def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
@@ -242,30 +212,6 @@ def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -
     return found
 
 
-def _cards(
-    numbers: Sequence[str],
-    first: Derived,
-    instances: Sequence[Sequence[Instance]],
-    printed: Iterable[PrintedEquation],
-    prefix: str = "",
-) -> list[Card]:
-    """Return cards of the first system's equations, with those of all systems."""
-    equations = {each.equation.id: each.equation for each in instances[0] if each.equation.number in numbers}
-    known, controlled = tuple(printed), bool(first.record.system.controls)
-    return [
-        Card(
-            place,
-            each.number,
-            each.name,
-            each.id,
-            controlled,
-            tuple(one for one in known if (one.number, one.name) == (each.number, each.name)),
-            tuple(one for group in instances for one in group if one.equation.id == each.id),
-        )
-        for place, each in zip(anchors(equations.values(), prefix), equations.values(), strict=True)
-    ]
-
-
 def _derivation_instances(derived: Derived) -> list[Instance]:
     """Return the equations of all derivations, those with most effects first."""
     record, several = derived.record, len(derived.record.derivations) > 1
@@ -290,5 +236,6 @@ def _derivation_instances(derived: Derived) -> list[Instance]:
 
 
 def _scene_instances(derived: Derived, name: str) -> list[Instance]:
-    scene = scene_named(derived, name)
-    return [Instance(scene.title, equation, verdicts_on(derived, equation, name)) for equation in scene.equations]
+    """Return the equations of a scene, none if it prescribes reactions."""
+    scenes = [scene for scene in derived.record.scenes if scene.name == name]
+    return [Instance(each.title, one, verdicts_on(derived, one, name)) for each in scenes for one in each.equations]

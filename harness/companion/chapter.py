@@ -1,28 +1,24 @@
-"""Chapters: the head of a page, and what a module of the page's name computes.
+"""Chapters: the heads of pages.
 
 A run in the head is ``name: command file --option value ...``, as on the command line: a method of `Scene`, ``derive``
-or ``errata``, and a scene file below ``examples``. Values and figures are expressions of Jinja. Figures are SVG
-documents.
+or ``errata``, and a scene file below ``examples``. `further_runs` has others. Values and figures are expressions of
+Jinja, over the results of the runs by their names. Figures are SVG documents.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from importlib import import_module
 from pathlib import Path
-from pkgutil import iter_modules
-from typing import Any
 
 import yaml
 
-from . import chapters, runs
-from .chapters import EXAMPLES
+from . import EXAMPLES, runs
+from .further_runs import FURTHER_RUNS
 from .runs import Run
 
 SOURCES = Path(__file__).parent
 FOLDERS = ("book", "manual")
 FENCE = "---\n"  # around the head of a page
-FILES = "files"  # among the values of a page: text of further files, by name
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +26,6 @@ class Chapter:
     """The computation of one page."""
 
     runs: Mapping[str, Run] = field(default_factory=dict)  # what it needs, by the names of the results
-    page: Callable[[Mapping[str, Any]], Mapping[str, Any]] = lambda results: {}  # values for the templates
     values: Mapping[str, str] = field(default_factory=dict)  # expressions of further values
     figures: Mapping[str, str] = field(default_factory=dict)  # expressions of the figures
 
@@ -48,13 +43,26 @@ def chapters_of_the_paper() -> dict[str, Chapter]:
 
 
 def _chapter(file: Path) -> Chapter:
-    name = file.stem.replace("-", "_")
-    known = name in {module.name for module in iter_modules(chapters.__path__)}
-    module = vars(import_module(f"{chapters.__name__}.{name}")) if known else {}
-    begin, *rest = file.read_text(encoding="utf-8").split(FENCE, 2)
-    head = {} if begin else yaml.safe_load(rest[0])
-    asked = {name: _run(*words.split()) for name, words in head.get("runs", {}).items()} | module.get("RUNS", {})
-    return Chapter(asked, module.get("page", Chapter.page), head.get("values", {}), head.get("figures", {}))
+    head = head_of(file.read_text(encoding="utf-8"))
+    asked = {name: _run(*words.split()) for name, words in head.get("runs", {}).items()}
+    return Chapter(asked | FURTHER_RUNS.get(file.stem, {}), head.get("values", {}), head.get("figures", {}))
+
+
+def head_of(text: str) -> dict[str, dict[str, str]]:
+    """Return the head of a page.
+
+    Parameters
+    ----------
+    text : str
+        Text of the page.
+
+    Returns
+    -------
+    dict
+        Runs, values and figures, each by its name.
+    """
+    begin, *rest = text.split(FENCE, 2)
+    return {} if begin else yaml.safe_load(rest[0])
 
 
 def _run(command: str, *words: str) -> Run:
@@ -67,9 +75,12 @@ def _run(command: str, *words: str) -> Run:
     settings = tuple(tuple(value.split("=")) for name, value in given if name == "--set")
     options = {name.removeprefix("--"): value for name, value in given if name != "--set"}
     scene = options.pop("scene", None)
-    asked = tuple((name, _number(value)) for name, value in options.items())
+    asked = tuple((name, _option(value)) for name, value in options.items())
     return Run(runs.answer, (command.replace("-", "_"), file, scene, asked, settings))
 
 
-def _number(text: str) -> int | Fraction:
+def _option(text: str) -> int | Fraction | tuple[str, ...]:
+    """Return a number, or names that are separated by commas."""
+    if text[0].isalpha():
+        return tuple(text.split(","))
     return int(text) if text.isdigit() else Fraction(text)

@@ -11,7 +11,7 @@ extensions = [
     "holonom.companion.directives",
 ]
 root_doc = "index"
-exclude_patterns = ["chapters", "templates", "own"]
+exclude_patterns = ["templates", "own"]
 gettext_location = gettext_uuid = False
 myst_enable_extensions = ["dollarmath", "deflist", "attrs_inline", "attrs_block", "colon_fence", "fieldlist"]
 bibtex_bibfiles = ["book/works.bib"]
@@ -34,24 +34,3 @@ html_copy_source = html_show_sphinx = html_show_copyright = False
 templates_path = ["sidebar"]
 BARS = [f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation", "scroll-end")]
 html_sidebars = {"**": [*BARS[:-1], "language.html", BARS[-1]]}
-SERIF = '"Iowan Old Style", "Palatino Linotype", Palatino, "URW Palladio L", "P052", "Book Antiqua", Georgia, serif'
-THEME = {  # what the theme takes our colours for
-    "font-stack": SERIF,
-    "color-background-primary": "var(--paper)",
-    "color-background-secondary": "var(--leaf)",
-    "color-foreground-primary": "var(--ink)",
-    "color-foreground-secondary": "var(--faint)",
-    "color-foreground-muted": "var(--faint)",
-    "color-background-border": "var(--rule)",
-    "color-admonition-title": "var(--accent)",
-    "color-admonition-title-background": "var(--leaf)",
-    "color-brand-primary": "var(--accent)",
-    "color-brand-content": "var(--link)",
-}
-NAMES = ("paper", "leaf", "ink", "faint", "rule", "link", "accent", "good", "good-leaf", "bad", "bad-leaf")
-LIGHT = "#fdfcf9 #f5f2ea #23201b #655e52 #ddd6c8 #1d5687 #8c3b1d #1f6b45 #e6f2ea #a52a1c #fbeae6"
-DARK = "#17181b #202226 #e3dfd6 #a8a296 #3a3c42 #8fbfe8 #e5a07f #86d1a6 #1b2c23 #f29a8a #351f1b"
-html_theme_options = {
-    f"{name}_css_variables": THEME | dict(zip(NAMES, colours.split(), strict=True))
-    for name, colours in (("light", LIGHT), ("dark", DARK))
-}

@@ -27,13 +27,13 @@ from sphinx.writers.html5 import HTML5Translator
 
 from ..language import ENGLISH, LANGUAGES, catalog_file, gettext, translatable
 from ..typeset.mathml import inline_mathml, mathml
+from . import EXAMPLES
 from .chapter import chapters_of_the_paper
-from .chapters import EXAMPLES
 from .finish import EQUATION, with_columns, with_equations
 from .runs import Run
 from .sessions import answers_of
 from .shelf import Shelf
-from .stored_results import digest_of_all
+from .stored_results import Results, digest_of_all
 
 GRADES = 3
 BOOK = "book"
@@ -81,22 +81,6 @@ class Value(SphinxRole):
         return [_html(_rendered(self.env, f"{{{{ {self.text} }}}}"))], []
 
 
-class Definition(SphinxRole):
-    """The definition of a word, which the index lists."""
-
-    def run(self) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-        """Return the word and its entry.
-
-        Returns
-        -------
-        tuple of two lists
-            Nodes, and messages of the system.
-        """
-        name = f"term-{self.env.new_serialno('index')}"
-        entry = addnodes.index(entries=[("single", self.text, name, "main", None)])
-        return [entry, nodes.target("", "", ids=[name]), nodes.emphasis("", self.text)], []
-
-
 class Session(SphinxDirective):
     """Statements at Maxima's prompt, one a line, with the answers.
 
@@ -120,7 +104,7 @@ class Session(SphinxDirective):
         example = EXAMPLES / self.arguments[0] if self.arguments else example
         asked = (*known, *(each.rstrip(";$") for each in self.content))
         self.env.temp_data[PROMPT] = example, asked
-        answers = shelf.result(Run(answers_of, (example, asked)))[len(known) :]
+        answers = shelf.results[Run(answers_of, (example, asked))][len(known) :]
         numbered = enumerate(zip(self.content, answers, strict=True), len(known) + 1)
         lines = [
             f"(%i{place}) {each}" + ("" if each.endswith("$") else f"\n(%o{place}) {answer}")
@@ -161,7 +145,9 @@ class RunFigure(SphinxDirective):
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        return [nodes.container("", *self.parse_content_to_nodes(), classes=[FIGURE], figure=self.arguments[0])]
+        name, shelf = self.arguments[0], self.env.temp_data[SHELF]
+        file = shelf.figure(self.env.docname, name) if shelf else ""
+        return [nodes.container("", *self.parse_content_to_nodes(), classes=[FIGURE], name=name, file=file)]
 
 
 class Exercise(SphinxDirective):
@@ -214,9 +200,9 @@ def _html(text: str) -> nodes.raw:
 def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
     """Put the picture of each figure, with its alternative text, before the caption."""
     for found in _containers(tree, FIGURE) if not _collecting(app) else ():
-        name, (words, *caption) = found["figure"], found.children
-        file, text = f'"figures/{name}.svg"', escape(Markup(words.astext()).striptags())
-        begin = f'<figure id="fig-{name}"><a href={file}><img src={file} alt="{text}" /></a><figcaption>'
+        (words, *caption), file = found.children, found["file"]
+        text = escape(Markup(words.astext()).striptags())
+        begin = f'<figure id="fig-{found["name"]}"><a href="{file}"><img src="{file}" alt="{text}" /></a><figcaption>'
         found.parent.replace(found, [_html(begin), *caption, _html("</figcaption></figure>")])
 
 
@@ -254,8 +240,8 @@ def _put_shelf(app: Sphinx, name: str, source: list[str]) -> None:
 def _shelf_of(app: Sphinx) -> Shelf:
     """Return the chapters of a build, those of the paper where no others were given."""
     if not hasattr(app, "holonom_shelf"):
-        files, result_folder = Path(app.outdir) / FILES, Path(app.doctreedir).parent / RESULTS
-        app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, result_folder)
+        files, results = Path(app.outdir) / FILES, Results(Path(app.doctreedir).parent / RESULTS)
+        app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, results)
     return app.holonom_shelf
 
 
@@ -289,7 +275,7 @@ def _outdated(app: Sphinx, env: BuildEnvironment, added: set[str], changed: set[
     before, now = getattr(env, "holonom_program", ""), digest_of_all()
     env.holonom_program = now
     shelf = _shelf_of(app)
-    same = before == now and shelf.result_folder is not None
+    same = before == now and shelf.results.folder is not None
     return [] if same else [name for name in env.found_docs if shelf.chapter(name).runs]
 
 
@@ -362,7 +348,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("exercise", Exercise)
     app.add_directive("answer", Answer)
     app.add_role("value", Value())
-    app.add_role("dfn", Definition(), override=True)
     app.add_role("chapter", XRefRole(warn_dangling=True))
     app.add_html_math_renderer("mathml", (_visit_math, None), (_visit_math_block, None))
     app.connect("config-inited", _compile_catalogs)

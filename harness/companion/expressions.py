@@ -6,7 +6,7 @@ import sympy
 from sympy import Expr, Symbol, simplify
 
 from ..mathjson import Tree, to_sympy
-from ..record import Equation
+from ..record import Equation, Scene
 
 RATES = ("{}".format, "dot({})".format, "ddot({})".format)  # names of a quantity and its time derivatives
 
@@ -31,6 +31,60 @@ def under(law: Mapping[str, Expr], expression: Expr) -> Expr:
         for order, name in enumerate((control, f"dot({control})", f"ddot({control})")):
             expression = expression.subs(Symbol(name, real=True), value.diff(time, order))
     return sympy.factor(simplify(expression))
+
+
+def at(expression: Expr, values: Mapping[str, Expr]) -> Expr:
+    """Return an expression with values in place of names.
+
+    Parameters
+    ----------
+    expression : Expr
+        SymPy expression.
+    values : mapping of str to Expr
+        Values by name.
+
+    Returns
+    -------
+    Expr
+        Expression with the values.
+    """
+    return expression.subs({Symbol(name, real=True): value for name, value in values.items()})
+
+
+def at_start(scene: Scene, equation: Equation) -> dict[str, Expr]:
+    """Return the right sides of an equation at the initial state of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Scene of a record, whose initial time is zero.
+    equation : Equation
+        Equation in the symbols of the initial state or of the state.
+
+    Returns
+    -------
+    dict of str to Expr
+        Values by the left sides.
+    """
+    begun = {f"{name}_0": value for name, value in scene.initial_state.items()}
+    known = {**scene.parameter_values, **scene.initial_state, **begun, "t": 0}
+    return {str(each.left): at(under(scene.control_law, each.right), known) for each in equation.relations}
+
+
+def common_denominator(equations: Mapping[str, Equation]) -> Expr:
+    """Return the denominator of the accelerations (11).
+
+    Parameters
+    ----------
+    equations : mapping of str to Equation
+        Equations by id.
+
+    Returns
+    -------
+    Expr
+        Common denominator.
+    """
+    return sympy.fraction(sympy.together(equations["accelerations"].relations[0].right))[1]
 
 
 def right_side(tree: Tree) -> Expr:

@@ -1,13 +1,12 @@
 """Pictures of a motion: the drawing of the system, and curves."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
 from pathlib import Path
 
-from ..figures.drawing import Film, animation, film_of, strip
-from ..figures.motion import draw_motion
+from ..figures.drawing import Film, film_of
+from ..figures.motion import motion_figure
+from ..figures.style import figure_style, svg_text
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..program.sign_pattern import drawing_at_any_time
@@ -15,7 +14,7 @@ from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report, Simulation
 from ..simulation.simulate import simulate
-from .runs import DEFAULT_LIMITS, NO_SETTINGS, Settings, drawn
+from .runs import DEFAULT_LIMITS, NO_SETTINGS, Settings
 
 SAMPLES = 1801
 SHOWN = ("trajectory", "multipliers")
@@ -76,22 +75,18 @@ def motion(
     return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
 
 
-def figures_of(motions: Iterable[tuple[str, Motion]]) -> dict[str, str]:
-    """Return the SVG files of motions, whose names each begin with the motion's own.
+def curves_drawn(simulation: Simulation) -> str:
+    """Draw the curves of a motion.
 
     Parameters
     ----------
-    motions : iterable of tuple of str and Motion
-        Name and pictures of each motion.
+    simulation : Simulation
+        The motion.
 
     Returns
     -------
-    dict of str to str
-        SVG documents by file name.
+    str
+        SVG document.
     """
-    files: dict[str, str] = {}
-    for name, found in motions:
-        files[f"{name}-curves.svg"] = drawn(partial(draw_motion, found.simulation))
-        if found.film:
-            files |= {f"{name}-moving.svg": animation(found.film), f"{name}-still.svg": strip(found.film)}
-    return files
+    with figure_style():
+        return svg_text(motion_figure(simulation))

@@ -6,7 +6,6 @@ Each file has the pages of the folder `own`, in whose names the file's prefix co
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +13,8 @@ from ..error_messages import translatable_error
 from ..failures import HolonomError
 from ..sandbox import Limits
 from ..source import describe
-from .chapter import FILES, Chapter
-from .motions import Motion, figures_of, motion
+from .chapter import Chapter
+from .motions import motion
 from .runs import Derived, Run, Settings, answer, derive
 
 TEXTS = Path(__file__).with_name("own")
@@ -31,29 +30,24 @@ CONTENTS = """
 
 
 @dataclass(frozen=True)
-class FailedRun:
-    """The reason for a missing answer."""
-
-    reason: str
-
-
-@dataclass(frozen=True)
 class FileAnswers:
-    """Answers about one scene file, or the reasons for missing ones.
+    """Answers about one scene file. A text is the reason for a missing one.
 
     Those about scenes are by the scenes' names.
     A scene that prescribes reactions is not in the record, but it has its free motion and its series.
     """
 
+    name: str
+    text: str
     derived: Derived
     titles: Mapping[str, str]
     free: Mapping[str, Any]
     series: Mapping[str, Any]
-    motions: Mapping[str, Motion | FailedRun]
+    motions: Mapping[str, Any]
 
 
-def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
-    """Return the value of a function, or a `FailedRun`.
+def or_reason(compute: Callable[..., Any], *arguments: Any) -> Any:
+    """Return the value of a function, or the reason for its error.
 
     Parameters
     ----------
@@ -65,12 +59,12 @@ def or_failure(compute: Callable[..., Any], *arguments: Any) -> Any:
     Returns
     -------
     Any
-        Result, or the `FailedRun`.
+        Result, or the message of the error.
     """
     try:
         return compute(*arguments)
     except HolonomError as error:
-        return FailedRun(translatable_error(error))
+        return translatable_error(error)
 
 
 def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int | None = None) -> FileAnswers:
@@ -95,11 +89,13 @@ def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int 
     titles = {scene.name: scene.title for scene in describe(file, dict(settings), limits).scenes}
     size = (("closed_form_size", closed_form_size),)
     return FileAnswers(
+        file.name,
+        file.read_text(encoding="utf-8", errors="replace"),
         derive(file, settings, limits, closed_form_size),
         titles,
-        {name: or_failure(answer, "free", file, name, size, settings, limits) for name in titles},
-        {name: or_failure(answer, "series", file, name, OPTIONS_OF_SERIES, settings, limits) for name in titles},
-        {name: or_failure(motion, file, name, None, settings, limits) for name in titles},
+        {name: or_reason(answer, "free", file, name, size, settings, limits) for name in titles},
+        {name: or_reason(answer, "series", file, name, OPTIONS_OF_SERIES, settings, limits) for name in titles},
+        {name: or_reason(motion, file, name, None, settings, limits) for name in titles},
     )
 
 
@@ -126,8 +122,8 @@ def chapters_of_scenes(
     """
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
-        runs = {"study": Run(study, (file, settings, limits, closed_form_size))}
-        found |= {f"{prefix}{name}": Chapter(runs, partial(_page, prefix, file, name == "motion")) for name in PAGES}
+        chapter = Chapter({"study": Run(study, (file, settings, limits, closed_form_size))})
+        found |= {f"{prefix}{name}": chapter for name in PAGES}
     return found
 
 
@@ -159,12 +155,3 @@ def _prefixed(files: Sequence[Path]) -> list[tuple[str, Path]]:
 def _prefix(file: Path, place: int) -> str:
     """Return the unique prefix of the page names of a file."""
     return f"{place}-{re.sub(r'[^a-z0-9]+', '-', file.stem.lower())}-"
-
-
-def _page(prefix: str, file: Path, drawn: bool, results: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the content of a page of a file, with the drawings of its motions."""
-    found = results["study"].motions
-    names = {name: f"{prefix}scene-{place}" for place, name in enumerate(found, 1)}
-    shown = [(names[name], each) for name, each in found.items() if isinstance(each, Motion)]
-    text = file.read_text(encoding="utf-8", errors="replace")
-    return {"figures": names, "file": file.name, "text": text, FILES: figures_of(shown) if drawn else {}}

@@ -12,13 +12,26 @@ from numpy.typing import NDArray
 from sympy import Expr
 
 from ..explanations import advice, engine_text, notes  # noqa: F401
-from ..figures import curves, motion
+from ..figures import benchmark, curves, drawing, motion
 from ..files import shared
 from ..free_motion import UniversalLaw
-from ..language import gettext, ngettext, translated
+from ..language import gettext, ngettext, spoken, translated
 from ..number_texts import number
+from ..program.motion_program import Program
+from ..program.targets import javascript
 from ..record import Scene
-from . import TEMPLATES, cards, excerpts, expressions, mathematics, power, table, tilted_plane
+from . import (
+    TEMPLATES,
+    cards,
+    convergence,
+    excerpts,
+    expressions,
+    mathematics,
+    motions,
+    power,
+    table,
+    worked_example,
+)
 from .cards import Card
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
@@ -26,7 +39,10 @@ NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(
 NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
-MODULES = (cards, curves, excerpts, expressions, mathematics, motion, power, tilted_plane)
+MODULES = (benchmark, curves, drawing, motion, cards, convergence, excerpts, expressions, mathematics, motions, power)
+MODULES += (worked_example,)
+NAMED = {"Panel": curves.Panel, "TIMES": benchmark.TIMES, "linspace": np.linspace, "array": np.array}
+NAMED |= {"exhibits": table("gallery")["exhibit"]}
 MACROS = ("tables.html", "cards.html", "answers.html", "motions.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
@@ -58,8 +74,7 @@ def environment(language: str) -> jinja2.Environment:
     own = [(name.removeprefix("_"), each) for name, each in globals().items()]
     functions = {name: each for name, each in named + own if isfunction(each)}
     environment.filters = functions | environment.filters
-    environment.globals |= functions | {"Panel": curves.Panel, "language": language}
-    environment.globals["in_repository"] = shared("tests").is_dir()
+    environment.globals |= functions | NAMED | {"language": language, "in_repository": shared("tests").is_dir()}
     environment.install_gettext_callables(gettext, ngettext)
     for library in MACROS:
         macros = environment.get_template(library).module
@@ -164,6 +179,16 @@ def _power_of_ten(value: float) -> Markup:
         return mathematics.tex("0")
     digit, exponent = f"{value:.0e}".split("e")
     return mathematics.tex(rf"{digit} \times 10^{{{int(exponent)}}}")
+
+
+def _drawing(name: str) -> str:
+    """Return a drawing that is a template, with its labels in the current language."""
+    return environment(spoken()).get_template(name).render()
+
+
+def _javascript(program: Program, name: str) -> Markup:
+    """Return a motion program as an object of JavaScript."""
+    return Markup(javascript.write(program, name))
 
 
 def _css_string(text: str) -> Markup:

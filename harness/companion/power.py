@@ -1,6 +1,5 @@
 """Power of the constraint forces along a motion, and its energy balance."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ from sympy import Expr, Symbol
 
 from ..record import Scene, System
 from ..simulation.result import Simulation
-from .expressions import under
+from .expressions import at, under
 
 
 @dataclass(frozen=True)
@@ -81,8 +80,7 @@ def values_along(expression: Expr, scene: Scene, motion: Simulation) -> NDArray[
         Value at each sample.
     """
     known = {"t": motion.times, **motion.coordinates, **motion.velocities, **motion.multipliers}
-    values: Mapping[Symbol, Expr] = {Symbol(name, real=True): value for name, value in scene.parameter_values.items()}
-    expression = under(scene.control_law, expression).subs(values)
+    expression = at(under(scene.control_law, expression), scene.parameter_values)
     names = sorted(str(symbol) for symbol in expression.free_symbols)
     function = sympy.lambdify([Symbol(name, real=True) for name in names], expression, "numpy")
     found = function(*(np.asarray(known[name], dtype=float) for name in names))

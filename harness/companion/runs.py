@@ -19,7 +19,6 @@ from ..record import derived_record
 from ..sandbox import Limits
 from ..scene import Scene
 from ..source import Source
-from ..temporary import private_directory
 
 if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport
@@ -142,22 +141,3 @@ def perform(runs: Iterable[Run], done: Callable[[], None]) -> dict[Run, Any]:
             processes.shutdown(cancel_futures=True)
             raise
     return results
-
-
-def drawn(draw: Callable[[Path], None]) -> str:
-    """Return the text of the SVG document that a function writes to a file.
-
-    Parameters
-    ----------
-    draw : callable
-        Function that writes an SVG file.
-
-    Returns
-    -------
-    str
-        SVG document.
-    """
-    with private_directory() as directory:
-        file = directory / "figure.svg"
-        draw(file)
-        return file.read_text(encoding="utf-8")

@@ -1,19 +1,19 @@
 """The chapters of one build: run, rendered and written."""
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from ..files import write_whole
-from .chapter import FILES, Chapter
+from .chapter import Chapter
 from .pages import environment
-from .runs import Run, perform
-from .stored_results import results_of
+from .stored_results import Results
+
+FOLDER = "figures"  # of all files that pages save, in their texts
 
 
 class Shelf:
-    """The results of the chapters of a build.
+    """The chapters of a build.
 
     Parameters
     ----------
@@ -23,26 +23,12 @@ class Shelf:
         What templates and figures speak.
     files : Path
         Where the figures and other files of the pages are put.
-    result_folder : Path or None
-        Where results of runs are stored for later builds.
-    results : dict, optional
-        Those that are there already. Others are added.
-    done : callable, optional
-        Called each time that one of the runs is done.
+    results : Results
+        Results of runs.
     """
 
-    def __init__(
-        self,
-        chapters: Mapping[str, Chapter],
-        language: str,
-        files: Path,
-        result_folder: Path | None,
-        results: dict[Run, Any] | None = None,
-        done: Callable[[], None] = lambda: None,
-    ) -> None:
-        self.chapters, self.language, self.files = chapters, language, files
-        self.result_folder, self.done = result_folder, done
-        self.results = {} if results is None else results
+    def __init__(self, chapters: Mapping[str, Chapter], language: str, files: Path, results: Results) -> None:
+        self.chapters, self.language, self.files, self.results = chapters, language, files, results
         self.known: dict[str, Mapping[str, Any]] = {}
 
     def perform(self, names: Iterable[str]) -> None:
@@ -53,9 +39,7 @@ class Shelf:
         names : iterable of str
             Names of the pages.
         """
-        wanted = [run for name in names for run in self.chapter(name).runs.values()]
-        missing = [run for run in wanted if run not in self.results]
-        self.results.update(results_of(missing, self.result_folder, partial(perform, done=self.done)))
+        self.results.perform(run for name in names for run in self.chapter(name).runs.values())
 
     def chapter(self, name: str) -> Chapter:
         """Return the chapter of a page, one without runs by default.
@@ -73,7 +57,7 @@ class Shelf:
         return self.chapters.get(name.rpartition("/")[2], Chapter())
 
     def values(self, name: str) -> Mapping[str, Any]:
-        """Return the results of a page's runs and what its chapter computes of them.
+        """Return the results of a page's runs and the values that its head computes of them.
 
         Parameters
         ----------
@@ -86,17 +70,48 @@ class Shelf:
             Values for the templates of the page.
         """
         if name not in self.known:
-            chapter, known = self.chapter(name), environment(self.language)
-            found = {each: self.results[run] for each, run in chapter.runs.items()}
-            found |= chapter.page(found)
+            chapter = self.chapter(name)
+            results = {each: self.results[run] for each, run in chapter.runs.items()}
+            self.known[name] = found = {"page": name, "save": self.save, "results": results, **results}
             for each, expression in chapter.values.items():
-                found[each] = known.compile_expression(expression)(**found)
-            figures = {f"{each}.svg": known.compile_expression(svg)(**found) for each, svg in chapter.figures.items()}
-            for file, text in (figures | found.get(FILES, {})).items():
-                (self.files / file).parent.mkdir(parents=True, exist_ok=True)
-                write_whole(self.files / file, text)
-            self.known[name] = found
+                found[each] = self._value(expression, found)
         return self.known[name]
+
+    def figure(self, name: str, figure: str) -> str:
+        """Draw a figure of a page.
+
+        Parameters
+        ----------
+        name : str
+            Name of the page.
+        figure : str
+            Name of the figure.
+
+        Returns
+        -------
+        str
+            Address of the SVG file.
+        """
+        return self.save(f"{figure}.svg", self._value(self.chapter(name).figures[figure], self.values(name)))
+
+    def save(self, name: str, text: str) -> str:
+        """Write a file that a page shows.
+
+        Parameters
+        ----------
+        name : str
+            Name of the file.
+        text : str
+            Its content.
+
+        Returns
+        -------
+        str
+            Address of the file.
+        """
+        self.files.mkdir(parents=True, exist_ok=True)
+        write_whole(self.files / name, text)
+        return f"{FOLDER}/{name}"
 
     def rendered(self, name: str, template: str) -> str:
         """Return a part of a page, rendered with the results of its chapter.
@@ -115,21 +130,5 @@ class Shelf:
         """
         return str(environment(self.language).from_string(template).render(self.values(name))).strip()
 
-    def result(self, run: Run) -> Any:
-        """Return the result of a run, performed in this process unless it is known.
-
-        Parameters
-        ----------
-        run : Run
-            Run that is not one of a chapter's.
-
-        Returns
-        -------
-        Any
-            Its result.
-        """
-        if run not in self.results:
-            self.results |= results_of(
-                [run], self.result_folder, lambda runs: {each: each.compute(*each.arguments) for each in runs}
-            )
-        return self.results[run]
+    def _value(self, expression: str, values: Mapping[str, Any]) -> Any:
+        return environment(self.language).compile_expression(expression)(**values)

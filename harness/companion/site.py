@@ -17,8 +17,8 @@ from .chapter import SOURCES, Chapter
 from .directives import FILES, RESULTS
 from .own_scenes import texts_of_scenes
 from .printing import browser, print_site
-from .runs import Run
 from .shelf import Shelf
+from .stored_results import Results
 
 SPHINX = {"en": "en", "zh": "zh_CN"}  # what Sphinx calls a language
 TEXTS = ".texts"  # the folder of the content of pages about scene files
@@ -59,11 +59,11 @@ def make_site(
     if pdf is not None:
         browser()  # before the work, not after it
     root, result_folder = ("index", None) if scenes else ("book/index", directory / RESULTS)
-    results: dict[Run, Any] = {}
+    results = Results(result_folder, done=done)
     for language in languages:
         first = language == languages[0]
         folder = directory if first else directory / language
-        shelf = Shelf(chapters, language, folder / FILES, result_folder, results, done)
+        shelf = Shelf(chapters, language, folder / FILES, results)
         if scenes:
             shelf.perform(chapters)  # if one has an error, nothing is written
         with speaking(language):

@@ -1,51 +1,76 @@
-"""Stored results of runs, by program, examples and arguments."""
+"""Results of runs, stored by program, examples and arguments."""
 
 import hashlib
 import inspect
 import pickle
 import shutil
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from ..files import shared, write_whole
-from .runs import Run
+from .runs import Run, perform
 
 HARNESS = Path(__file__).parents[1]
 APART = {"cli", "companion", "display", "locale", "reference", "__pycache__"}  # folders that no result depends on
 SUFFIXES = {".py", ".mac", ".lisp", ".json", ".toml", ".c", ".h"}
 
-Compute = Callable[[list[Run]], dict[Run, Any]]
 
-
-def results_of(runs: Iterable[Run], directory: Path | None, compute: Compute) -> dict[Run, Any]:
-    """Return the results of runs from a directory, and store new ones there.
+class Results:
+    """The results of runs, each performed once.
 
     Parameters
     ----------
-    runs : iterable of Run
-        Runs.
-    directory : Path or None
-        Folder of the results of earlier builds.
-    compute : callable
-        Function that performs runs.
-
-    Returns
-    -------
-    dict of Run to Any
-        Results by run.
+    folder : Path or None
+        Folder of the results of earlier builds, where new ones are stored.
+    known : mapping of Run to Any, optional
+        Results that are there already.
+    done : callable, optional
+        Called each time that one of the runs is done.
     """
-    wanted = dict.fromkeys(runs)
-    files = {run: directory / f"{_key(run)}.pickle" for run in wanted} if directory else {}
-    found = {run: pickle.loads(file.read_bytes()) for run, file in files.items() if file.is_file()}
-    made = compute([run for run in wanted if run not in found])
-    for run, result in made.items():
-        if directory:
-            directory.mkdir(parents=True, exist_ok=True)
-            write_whole(files[run], pickle.dumps(result))
-    return found | made
+
+    def __init__(
+        self,
+        folder: Path | None = None,
+        known: Mapping[Run, Any] | None = None,
+        done: Callable[[], None] = lambda: None,
+    ) -> None:
+        self.folder, self.known, self.done = folder, dict(known or {}), done
+
+    def perform(self, runs: Iterable[Run]) -> None:
+        """Perform the runs that have no result yet, two at a time.
+
+        Parameters
+        ----------
+        runs : iterable of Run
+            Runs.
+        """
+        missing = [run for run in dict.fromkeys(runs) if run not in self.known and not self._is_stored(run)]
+        for run, result in perform(missing, self.done).items():
+            self._keep(run, result)
+
+    def __getitem__(self, run: Run) -> Any:
+        """Return the result of a run, which is performed in this process if there is none."""
+        if run not in self.known:
+            if self._is_stored(run):
+                self.known[run] = pickle.loads(self._file(run).read_bytes())
+            else:
+                self._keep(run, run.compute(*run.arguments))
+        return self.known[run]
+
+    def _is_stored(self, run: Run) -> bool:
+        return self.folder is not None and self._file(run).is_file()
+
+    def _file(self, run: Run) -> Path:
+        return self.folder / f"{_key(run)}.pickle"
+
+    def _keep(self, run: Run, result: Any) -> None:
+        self.known[run] = result
+        if self.folder is not None:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            write_whole(self._file(run), pickle.dumps(result))
 
 
 def _digest(files: Iterable[Path]) -> str:
@@ -62,7 +87,7 @@ def digest_of_all() -> str:
     str
         Hexadecimal digest.
     """
-    patterns = "companion/*.py", "companion/chapters/*.py", "companion/templates/*", "locale/*/*/holonom.po"
+    patterns = "companion/*.py", "companion/templates/*", "locale/*/*/holonom.po"
     own = (file for pattern in patterns for file in HARNESS.glob(pattern))
     return _digest([*_below(shared("maxima")), *_below(shared("examples")), *_below(HARNESS), *own])
 

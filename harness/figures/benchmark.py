@@ -3,14 +3,13 @@
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
 
 from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
 from ..benchmark.work_precision.measurement import WHOLE_MOTION, Group, Measurement
 from ..language import gettext, translatable, translated
-from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, write_figure
+from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, svg_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -50,24 +49,27 @@ PANELS = (
 TIMES = PANELS[0], PANELS[2]
 
 
-def draw_study(study: "Study", path: Path, panels: Sequence[View] = PANELS, columns: int = 2) -> None:
+def draw_study(study: "Study", panels: Sequence[View] = PANELS, columns: int = 2) -> str:
     """Draw a study in panels, as SVG.
 
     Parameters
     ----------
     study : Study
         Measurements with their scene and machine.
-    path : Path
-        SVG file to write.
     panels : sequence of View
         Panels, row by row.
     columns : int
         Number of panels in a row.
 
+    Returns
+    -------
+    str
+        SVG document.
+
     Raises
     ------
     HolonomError
-        The file cannot be written, or Matplotlib is not installed.
+        Matplotlib is not installed.
     """
     with figure_style():
         rows = math.ceil(len(panels) / columns)
@@ -77,7 +79,7 @@ def draw_study(study: "Study", path: Path, panels: Sequence[View] = PANELS, colu
             axes.set_title(gettext(panel.title, until=float(study.until), time=_time_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
         figure.supxlabel(fill(str(study.machine), MACHINE * columns), x=0.01, ha="left", fontsize="small")
-        write_figure(figure, path)
+        return svg_text(figure)
 
 
 def digits_of(measurement: Measurement) -> float:
@@ -123,20 +125,23 @@ WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 6.5, 0.2, 3.2, 1.4  # inches
 MOST_DIGITS = 16.5
 
 
-def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
+def draw_stability(reports: Sequence[CaseReport]) -> str:
     """Draw the correct digits of every method in every case, as SVG.
 
     Parameters
     ----------
     reports : sequence of CaseReport
         The hard cases, in the order in which they are drawn.
-    file : Path
-        SVG file to write.
+
+    Returns
+    -------
+    str
+        SVG document.
 
     Raises
     ------
     HolonomError
-        Matplotlib is not installed, or the file cannot be written.
+        Matplotlib is not installed.
     """
     rows = [row for report in reports for row in _rows(report)]
     sweeps = [report.sweep for report in reports if report.sweep is not None]
@@ -147,7 +152,7 @@ def draw_stability(reports: Sequence[CaseReport], file: Path) -> None:
         _draw_digits(panels[0], rows)
         for panel, sweep in zip(panels[1:], sweeps, strict=True):
             _draw_sweep(panel, sweep)
-        write_figure(figure, file)
+        return svg_text(figure)
 
 
 def _rows(report: CaseReport) -> list[Result | str]:

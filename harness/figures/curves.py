@@ -1,7 +1,7 @@
 """Draw curves over the time in panels below each other, and constraint drift."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..language import gettext
 from ..simulation.request import Stabilization
 from ..simulation.result import Simulation
-from .style import LINES, PALETTE, figure_style, legend_above, new_figure, svg_text
+from .style import LINES, MARKERS, PALETTE, figure_style, legend_above, new_figure, svg_text
 
 WIDTH, HEIGHT_OF_PANEL = 6.0, 2.6  # inches
 
@@ -22,6 +22,8 @@ class Panel:
     ylabel: str  # what is drawn, with its unit
     curves: Mapping[str, tuple[NDArray, NDArray]]  # times and values, by what the legend calls them
     scale: Literal["linear", "log"] = "linear"  # of the values
+    points: Mapping[str, tuple[Sequence[float], Sequence[float]]] = field(default_factory=dict)  # drawn as marks
+    limits: tuple[float | None, float | None] = (None, None)  # lowest and highest value that is shown
 
 
 def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
@@ -51,7 +53,9 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
             for place, (label, (times, values)) in enumerate(panel.curves.items()):
                 style = {"color": PALETTE[place % len(PALETTE)], "linestyle": LINES[place % len(LINES)]}
                 axes.plot(times, values, label=label, **style)
-            axes.set(ylabel=panel.ylabel, yscale=panel.scale)
+            for place, (label, (x, y)) in enumerate(panel.points.items()):
+                axes.plot(x, y, MARKERS[place], color=PALETTE[-1 - place], fillstyle="none", label=label)
+            axes.set(ylabel=panel.ylabel, yscale=panel.scale, ylim=panel.limits)
             legend_above(axes)
         drawn[-1].set_xlabel(xlabel)
         return svg_text(figure)

@@ -13,6 +13,7 @@ from holonom.companion.directives import FILES
 from holonom.companion.runs import perform
 from holonom.companion.shelf import Shelf
 from holonom.companion.site import build
+from holonom.companion.stored_results import Results
 from holonom.language import speaking
 
 
@@ -30,7 +31,7 @@ def made_companion(results, tmp_path_factory):
     """Sphinx's application that made the companion, and what its chapters made the pages of, by the pages' names."""
     folder = tmp_path_factory.mktemp("made")
     directory, sources = folder / "companion", copied(folder)
-    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, folder / "results", dict(results))
+    shelf = Shelf(chapters_of_the_paper(), "en", directory / FILES, Results(folder / "results", results))
     return build(sources, directory, shelf, {}), shelf.known
 
 
@@ -47,7 +48,7 @@ def copied(folder):
 def chinese(results, tmp_path_factory):
     """Directory of the companion's pages in Chinese."""
     directory = tmp_path_factory.mktemp("chinese") / "companion"
-    shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
+    shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, Results(None, results))
     with speaking("zh"):
         build(SOURCES, directory, shelf, {})
     return directory

@@ -5,20 +5,17 @@ from fractions import Fraction
 import pytest
 
 from holonom.benchmark.work_precision.study import Plan, Study, study
-from holonom.companion import convergence
+from holonom.companion import INITIAL_SCENE, PAPER, convergence
 from holonom.companion.chapter import chapters_of_the_paper
-from holonom.companion.chapters import INITIAL_SCENE, PAPER
-from holonom.companion.convergence import RadiiFound
 from holonom.companion.runs import Run
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.series.radius import Radius
 
-FEW_ORDERS = (30, 40)
 
-
-def few_radii() -> RadiiFound:
+def few_radii() -> dict[float, Radius]:
     with pytest.MonkeyPatch.context() as few:
-        few.setattr(convergence, "ORDERS_OF_RADII", FEW_ORDERS)
+        few.setattr(convergence, "ORDER", 40)
         return convergence.find_radii((Fraction(-1), Fraction(0), Fraction(3, 10)))
 
 
@@ -31,6 +28,6 @@ CASES = chapters_of_the_paper()["hard-cases"].runs
 LONG_CASES = ("spring 1e6 times stiffer", "parallelogram through its dead centres", "redundant spatial mechanism")
 SHORTER = {
     **{CASES[name]: CASES["parallel constraints"] for name in LONG_CASES},
-    chapters_of_the_paper()["radius-of-convergence"].runs["radius"]: Run(few_radii),
+    chapters_of_the_paper()["radius-of-convergence"].runs["radii"]: Run(few_radii),
     chapters_of_the_paper()["work-precision"].runs["study"]: Run(coarse_study),
 }

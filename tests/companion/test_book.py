@@ -9,15 +9,14 @@ import pytest
 from fontTools.ttLib import TTFont
 from sympy import Symbol, sin
 
-from holonom.companion import chapter as chapters
+from holonom.companion import BEAD, INITIAL_SCENE, PAPER
 from holonom.companion.cards import named_equations, scene_named
 from holonom.companion.chapter import chapters_of_the_paper
-from holonom.companion.chapters import BEAD, INITIAL_SCENE, PAPER
-from holonom.companion.convergence import draw_radius
 from holonom.companion.directives import FILES
 from holonom.companion.runs import Run, derive
+from holonom.companion.shelf import Shelf
+from holonom.companion.stored_results import Results
 from holonom.errata import errata
-from holonom.series.radius import ENTIRE
 
 LOADING = {"link", "script", "img", "source", "iframe"}
 CARDS = {
@@ -229,20 +228,16 @@ def test_the_glossary_says_it_in_chinese_too(companion):
 
 @pytest.mark.long
 def test_the_radii_of_the_whole_figure_are_those_of_the_truth():
-    """The zeros of 1 + 2 (u0 + t)^2; under u0 exp(t) there are none."""
-    found = chapters_of_the_paper()["radius-of-convergence"].runs["radius"].compute()
-    assert len(found.controls) == 17
-    for u0, *radii in zip(found.controls, found.coarse, found.fine, strict=True):
-        for radius in (each for each in radii if each.estimate is not None):
-            assert abs(radius.estimate - math.sqrt(u0**2 + 0.5)) <= radius.uncertainty, u0
-    assert None not in {radius.estimate for radius in found.fine}
-    assert set(found.entire) == {ENTIRE}
-    assert "<svg" in draw_radius(found)
+    """Those of the zeros of 1 + 2 (u0 + t)^2."""
+    found = chapters_of_the_paper()["radius-of-convergence"].runs["radii"].compute()
+    assert len(found) == 17
+    for u0, radius in found.items():
+        assert abs(radius.estimate - math.sqrt(u0**2 + 0.5)) <= radius.uncertainty, u0
 
 
 @pytest.mark.long
-def test_the_whole_study_has_its_fifty_digits_on_the_page():
-    chapter = chapters_of_the_paper()["work-precision"]
-    page = chapter.page({name: run.compute(*run.arguments) for name, run in chapter.runs.items()})
-    assert min(each.error for each in page["rows"]) < 1e-48
-    assert "<svg" in page[chapters.FILES]["accuracy.svg"]
+def test_the_whole_study_has_its_fifty_digits_on_the_page(tmp_path):
+    shelf = Shelf(chapters_of_the_paper(), "en", tmp_path, Results())
+    assert min(each.error for each in shelf.values("work-precision")["rows"]) < 1e-48
+    shelf.figure("work-precision", "accuracy")
+    assert "<svg" in (tmp_path / "accuracy.svg").read_text(encoding="utf-8")

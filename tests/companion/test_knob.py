@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from holonom.companion.chapter import chapters_of_the_paper
-from holonom.companion.chapters.turn_the_knob import LAWS
 from holonom.companion.directives import FILES
+from holonom.companion.further_runs import LAWS
 from holonom.program.numpy_function import NumpyFunction
 
 NODE = shutil.which("node")

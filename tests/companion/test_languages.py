@@ -18,10 +18,10 @@ from holonom.cli import holonom
 from holonom.companion import directives, site
 from holonom.companion import pages as companion_pages
 from holonom.companion.chapter import SOURCES, chapters_of_the_paper
-from holonom.companion.chapters import gallery
 from holonom.companion.conf import exclude_patterns
 from holonom.companion.directives import FILES
 from holonom.companion.shelf import Shelf
+from holonom.companion.stored_results import Results
 from holonom.free_motion import free_motion
 from holonom.language import Message, speaking
 from holonom.sandbox import Limits
@@ -130,10 +130,9 @@ def bracketed(results, tmp_path_factory):
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(language, "_catalog", lambda name: Bracketing() if name == "zh" else known(name))
         changed.setattr(directives, "write_mo", write_bracketed)
-        changed.setattr(gallery, "figures_of", lambda shown: {})
         changed.setattr(Figure, "savefig", lambda figure, file, **how: file.write("<svg/>"))
         companion_pages.environment.cache_clear()  # which stores the words of templates, in proper Chinese
-        shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, None, dict(results))
+        shelf = Shelf(chapters_of_the_paper(), "zh", directory / FILES, Results(None, results))
         with speaking("zh"):
             site.build(SOURCES, directory, shelf, {"exclude_patterns": [*exclude_patterns, "reference"]})
         companion_pages.environment.cache_clear()

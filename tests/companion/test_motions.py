@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 import pages
 import pytest
 
-from holonom.companion.chapters.gallery import EXHIBITS
 from holonom.companion.directives import FILES
+from holonom.companion.further_runs import EXHIBITS
 
 
 def test_every_example_is_in_the_gallery():

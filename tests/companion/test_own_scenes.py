@@ -67,12 +67,12 @@ def pictures(own, prefix: str) -> set[str]:
 
 
 def test_a_scene_is_drawn_whatever_it_observes_and_one_without_end_says_why_not(own):
-    assert pictures(own, "4-drawn") == {f"4-drawn-scene-1-{kind}.svg" for kind in ("moving", "still", "curves")}
+    assert pictures(own, "4-drawn") == {f"4-drawn-motion-1-{kind}.svg" for kind in ("moving", "still", "curves")}
     assert "endless: the scene has no time span (add time_span" in pages.words(own / "4-drawn-motion.html")
 
 
 def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):
-    assert pictures(own, "5-undrawn") == {"5-undrawn-scene-1-curves.svg"}
+    assert pictures(own, "5-undrawn") == {"5-undrawn-motion-1-curves.svg"}
     assert "The system has no drawing." in pages.words(own / "5-undrawn-motion.html")
 
 

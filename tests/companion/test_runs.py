@@ -12,6 +12,7 @@ from holonom.companion.directives import FILES
 from holonom.companion.runs import Run, perform
 from holonom.companion.shelf import Shelf
 from holonom.companion.site import build
+from holonom.companion.stored_results import Results
 from holonom.failures import ErrorKind, HolonomError
 
 
@@ -28,7 +29,7 @@ def test_a_second_build_reads_only_the_chapter_that_has_changed(made_companion, 
     before = {tree: tree.stat().st_mtime_ns for tree in trees.rglob("*.doctree")}
     chapter = sources / "book" / "free-motion.md"
     chapter.write_text(chapter.read_text(encoding="utf-8") + "\n% a comment\n", encoding="utf-8")
-    shelf = Shelf(chapters_of_the_paper(), "en", pages / FILES, sources.parents[1] / "results", dict(results))
+    shelf = Shelf(chapters_of_the_paper(), "en", pages / FILES, Results(sources.parents[1] / "results", results))
     build(sources, pages, shelf, {})
     assert {tree for tree, time in before.items() if tree.stat().st_mtime_ns != time} == {
         trees / "book" / "free-motion.doctree"

@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from holonom.companion.chapters.work_precision import SWING, drifting
+from holonom.companion.further_runs import SWING, drifting
 from holonom.figures.curves import draw_drift
 from holonom.simulation.request import Stabilization
 

@@ -1,5 +1,14 @@
-/* Turn the knob: the motion programs above, followed by the classical method of Runge and Kutta. */
+/* Turn the knob: motion programs of Maxima, followed by the classical method of Runge and Kutta. */
 "use strict";
+
+{{ models.linear.motion | javascript("motion") }}
+{{ models.linear.constraints | javascript("constraints") }}
+{{ drawing[1] | javascript("drawing") }}
+{% for law, model in models.items() %}
+{{ model.law | javascript("law_" ~ law) }}
+{% endfor %}
+const LAWS = {{ "{" }}{% for law in models %}{{ law }}: law_{{ law }}, {% endfor %}};
+const DATA = {{ {"coordinates": models.linear.coordinates, "until": 4, "samples": samples, "shapes": drawing[0]} | tojson }};
 
 const knob = (() => {
   const LONGEST = 0.005;  // step
@@ -53,28 +62,17 @@ const knob = (() => {
     return {times, seen};
   }
 
-  /* The singular times nearest to t = 0: zeros, by Newton's method, of what the accelerations are divided by. */
+  /* The singular times nearest to t = 0, one of each conjugate pair: where the denominator 1 + 2u^2 of the accelerations is zero. */
   function singularities(settings) {
-    const {law, kappa, k, c} = settings, equal = (one, other) => Math.abs(one - other) < 1e-9;
-    if (law === "exponential" && equal(k, kappa*kappa) && equal(c, 2*kappa)) return [];  // every motion is free
+    const {law, u0, omega, kappa, k, c} = settings, equal = (one, other) => Math.abs(one - other) < 1e-9;
     const zero = (one, other) => equal(settings[one], -settings[other]);
     if (zero("q1", "q2") && zero("dot(q1)", "dot(q2)")) return [];  // q1 + q2 stays zero, and so does the multiplier
-    const scale = law === "exponential" ? 1/Math.abs(kappa) : 1;  // of times; with kappa = 0 nothing is found, rightly
-    const at = (a, b) => SINGULAR[settings.law]({...settings, a, b});
-    const found = [];
-    for (let a = -4; a <= 4; a += 0.5) for (let b = 0.1; b <= 4.2; b += 0.5) {
-      let [x, y, size] = [scale*a, scale*b, Infinity];
-      for (let turn = 0; turn < 40 && size > 1e-13; turn++) {
-        const value = at(x, y), right = at(x + 1e-6, y), left = at(x - 1e-6, y);
-        const [re, im] = [(right.re - left.re)/2e-6, (right.im - left.im)/2e-6], square = re*re + im*im;
-        [x, y] = [x - (value.re*re + value.im*im)/square, y - (value.im*re - value.re*im)/square];
-        size = Math.hypot(value.re, value.im);
-      }
-      if (size < 1e-9) found.push([x, Math.abs(y)]);
-    }
-    const nearest = Math.min(...found.map(([x, y]) => Math.hypot(x, y)));
-    return found.filter(([x, y], k) => Math.hypot(x, y) < nearest + 1e-6
-      && found.findIndex(([p, q]) => Math.hypot(x - p, y - q) < 1e-5) === k);
+    if (law === "linear") return [[-u0, Math.SQRT1_2]];
+    if (equal(u0, 0)) return [];  // the plane stays flat
+    const size = 1/(Math.SQRT2*Math.abs(u0)), quarter = Math.PI/2;
+    if (law === "swinging") return [-1, 1].map(sign => [sign*quarter/omega, Math.asinh(size)/omega]);
+    if (equal(kappa, 0) || (equal(k, kappa*kappa) && equal(c, 2*kappa))) return [];  // at rest, or every motion is free
+    return [[Math.log(size)/kappa, Math.abs(quarter/kappa)]];
   }
 
   const radius = settings => Math.min(Infinity, ...singularities(settings).map(point => Math.hypot(...point)));

@@ -1,0 +1,183 @@
+"""Runs of chapters other than commands."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from pathlib import Path
+
+from ..benchmark.hard_cases.case import CaseReport, Extent, examined
+from ..benchmark.hard_cases.register import REGISTER
+from ..benchmark.work_precision.study import Plan, Study, study
+from ..documents import ask
+from ..failures import HolonomError
+from ..formats import Document
+from ..program.model import Model, scene_model
+from ..program.motion_problem import motion_problem
+from ..program.motion_program import Program
+from ..program.request import Request
+from ..sandbox import Limits
+from ..simulation.request import SimulationRequest, Stabilization
+from ..simulation.result import Simulation
+from ..simulation.simulate import simulate
+from ..temporary import private_directory
+from . import EXAMPLES, INITIAL_SCENE, PAPER, PENDULUM, TILTED_PLANE, table
+from .convergence import find_radii
+from .motions import motion
+from .runs import Run
+
+LAWS = {"linear": "linear_scene", "exponential": "exponential_scene", "swinging": "swinging_scene"}
+OPEN = ("u0", "k", "c")
+OF_LAW = {"linear": (), "exponential": ("kappa",), "swinging": ("omega",)}  # parameters of one law alone
+
+DOUBLE, QUADRUPLE, FIFTY = (1e-4, 1e-8, 1e-12, 1e-16), (1e-16, 1e-24, 1e-32), (1e-30, 1e-40, 1e-50)
+SHORT_PLAN = Plan(
+    tolerances={"double": DOUBLE, "quadruple": QUADRUPLE, "50": FIFTY},
+    solver_tolerances=DOUBLE[:3],
+    orders=(10, 20, 40, 80),
+)
+SWING, COARSE, UNTIL, SAMPLES = "swing_scene", 1e-6, Fraction(100), 401
+
+EXHIBITS = table("gallery")["exhibit"]
+
+
+def models(file: Path) -> dict[str, Model]:
+    """Return the scenes of the control page as models whose parameters are open.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+
+    Returns
+    -------
+    dict of str to Model
+        Models by control law.
+    """
+    return {law: scene_model(file, Request(scene), [*OPEN, *OF_LAW[law]], Limits()) for law, scene in LAWS.items()}
+
+
+def drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
+    """Return the shapes of a system's drawing, and the program of their numbers.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    shapes : tuple of str
+        Names of the shapes.
+    program : Program
+        Motion program of the numbers.
+    """
+    drawing = motion_problem(file, Request(scene), Limits()).drawing
+    return tuple(map(str, drawing.shapes)), drawing.program
+
+
+def short_study(file: Path, scene: str) -> Study:
+    """Return the study of ``holonom accuracy``, with fewer settings.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    Study
+        Measurements.
+    """
+    return study(file, Request(scene), Limits(), SHORT_PLAN)
+
+
+def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
+    """Return a motion at a coarse tolerance, with each stabilization method.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    scene : str
+        Name of the scene.
+
+    Returns
+    -------
+    dict of Stabilization to Simulation
+        Motions by stabilization.
+    """
+    problem = replace(motion_problem(file, Request(scene), Limits()), observe=("trajectory", "energy", "residuals"))
+    return {
+        method: simulate(problem, SimulationRequest(tol=COARSE, stabilization=method, until=UNTIL, samples=SAMPLES))
+        for method in Stabilization
+    }
+
+
+def short_report(name: str) -> CaseReport:
+    """Return the short report on a hard case.
+
+    Parameters
+    ----------
+    name : str
+        Name of the case.
+
+    Returns
+    -------
+    CaseReport
+        Digits of the methods.
+    """
+    return examined(next(case for case in REGISTER if case.name == name), Extent.SHORT)
+
+
+def refusal(file: Path, given: str, changed: str) -> str:
+    """Return the error message for a scene file with one changed entry.
+
+    Parameters
+    ----------
+    file : Path
+        Scene file.
+    given : str
+        Entry of the file.
+    changed : str
+        Entry in its place.
+
+    Returns
+    -------
+    str
+        Message.
+    """
+    text = file.read_text(encoding="utf-8").replace(given, changed)
+    load = next(line for line in text.splitlines() if line.startswith("load("))
+    with private_directory() as directory:
+        copy = directory / file.name
+        copy.write_text(text.replace(load, 'load("holonom.mac")$'), encoding="utf-8")
+        try:
+            ask(Document.RECORD, copy)
+        except HolonomError as error:
+            return error.detail
+    raise ValueError(f"{changed} is not refused")
+
+
+def _exhibit(file: str, scene: str | None = None, until: str | None = None, **shown: str) -> Run:
+    return Run(motion, (EXAMPLES.parent / file, scene, until and Fraction(until)))
+
+
+FURTHER_RUNS: Mapping[str, Mapping[str, Run]] = {
+    "gallery": {each["name"]: _exhibit(**each) for each in EXHIBITS},
+    "hard-cases": {case.name: Run(short_report, (case.name,)) for case in REGISTER},
+    "radius-of-convergence": {"radii": Run(find_radii)},
+    "turn-the-knob": {
+        "models": Run(models, (TILTED_PLANE,)),
+        "drawing": Run(drawing_of, (TILTED_PLANE, LAWS["linear"])),
+    },
+    "work-precision": {
+        "study": Run(short_study, (PAPER, INITIAL_SCENE)),
+        "drift": Run(drifting, (PENDULUM, SWING)),
+    },
+    "your-own-system": {"refusal": Run(refusal, (PENDULUM, "y = -cos(%pi/13)", "y = -1"))},
+}
+"""Runs by the names of their results, by page."""
