@@ -20,7 +20,10 @@ if TYPE_CHECKING:
 
 ROUNDING = 1e-9  # share of a size that is shown as zero
 SHOWN_COORDINATES = 8  # columns for which there is room
-MOVING = "The motion continues from here: these eigenvalues are those of this time and do not determine stability."
+MOVING = (
+    "The motion continues from here: these eigenvalues are those of this time and these coordinates, "
+    "and do not determine stability."
+)
 
 
 def show_linearization(console: "Console", found: "Linearization") -> None:
