@@ -9,7 +9,7 @@ from pathlib import Path
 
 import mpmath
 import numpy as np
-from mpmath import asin, cos, eigsy, ellipfun, ellipk, exp, findroot, matrix, mp, mpf, pi, quad, sin, sqrt
+from mpmath import asin, cos, eigsy, ellipfun, ellipk, exp, findroot, lu_solve, matrix, mp, mpf, pi, quad, sin, sqrt
 
 import holonom
 from holonom.benchmark.hard_cases.runs import problem
@@ -130,7 +130,8 @@ def sarrus() -> dict:
     state = np.array([*map(float, places), *np.zeros(len(places))])
     jacobian = MotionMatrices(motion).independent(float(Sarrus.UNTIL), state).jacobian
     multipliers = np.zeros(len(motion.multipliers))
-    multipliers[list(motion.independent)] = np.linalg.lstsq(jacobian.T, np.array(forces, dtype=float))[0]
+    with certified:  # the normal equations; LAPACK in doubles rounds otherwise on other processors
+        multipliers[list(motion.independent)] = lu_solve(matrix(jacobian.T.tolist()), matrix(forces))
     until = float(Sarrus.UNTIL)
     return {"until": until, "coordinates": places, "constraint forces": forces, "multipliers": multipliers.tolist()}
 
