@@ -44,7 +44,11 @@ DEPENDENT = 1e-12  # singular values of a step's equations, relative to the larg
 ROUNDING = 1e-12  # of a size
 NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
+UNRESOLVED = 1e-3  # the same if one is not isolated
 LEAST_STIFFNESS = 1e-7  # relative to the changes of all forces: what is smaller is not decided
+UNCERTAIN = 16  # Newton steps, of the largest force left, by which a place is uncertain
+BESIDE = 1e-9  # relative distance at which other rounding errors are met
+FARTHEST = 1e-4  # such a step in terms of the sizes: forces of fourth order vanish to rounding errors nearer by
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
@@ -316,6 +320,9 @@ class _Search:
                 singular += 1
                 continue
             found = _Solution(q, multipliers, *stiffness)
+            if (place := self._unresolved(found, known, turns)) is not None:
+                known[place] = found if known[place].isolated else known[place]
+                continue
             if any(found.same_family(other) for other in known):
                 more += 1
             else:
@@ -334,8 +341,8 @@ class _Search:
             linear,
         )
 
-    def _stiffness(self, q: Vector, multipliers: Vector) -> tuple[Matrix, float] | None:
-        """Return the change of the forces along the manifold, and a bound for its size.
+    def _stiffness(self, q: Vector, multipliers: Vector) -> tuple[Matrix, float, float] | None:
+        """Return the change of the forces along the manifold, a bound for its size, and its error.
 
         Its shape is (m, m). None in a singular configuration.
 
@@ -352,7 +359,37 @@ class _Search:
             return None
         changes = here["equation_by_q"]
         bound = np.linalg.norm(changes, 2) * np.linalg.norm(tangent.basis, 2) ** 2 if tangent.basis.size else 0.0
-        return tangent.basis.T @ changes @ tangent.basis, float(bound)
+        stiffness = tangent.basis.T @ changes @ tangent.basis
+        return stiffness, float(bound), self._error(q, multipliers, tangent.basis, stiffness)
+
+    def _error(self, q: Vector, multipliers: Vector, basis: Matrix, stiffness: Matrix) -> float:
+        """Return the change of the stiffness within the uncertainty of the place, and its rounding errors.
+
+        By Kantorovich's theorem a solution is near if the stiffness changes little within Newton's step. At a multiple
+        solution, also one by rounding errors, it changes more than it is.
+        """
+        if not stiffness.size:
+            return 0.0
+        rows, values, columns = np.linalg.svd(stiffness)
+        directions = basis @ columns.T
+        lengths = np.max(np.abs(directions) / self._sizes[:, None], axis=0)
+        directions /= lengths
+        beside = np.linspace(-BESIDE, BESIDE, 9) * np.max(np.abs(q) / self._sizes)
+        moved = np.concatenate([directions * step for step in beside], axis=1)
+        forces = np.max(np.abs(self._near(q, multipliers, moved, "equation") @ basis @ rows), axis=0)
+        steps = np.minimum(UNCERTAIN * forces * lengths / or_one(values), FARTHEST)
+        near, far = (
+            basis.T @ self._near(q, multipliers, np.concatenate([moved, -moved], axis=1), "equation_by_q") @ basis
+            for moved in (directions * steps, directions)
+        )
+        rounding = UNCERTAIN * np.finfo(float).eps * np.linalg.norm(far, 2, axis=(1, 2))
+        return float(np.max(np.linalg.norm(near - stiffness, 2, axis=(1, 2))) + np.max(rounding))
+
+    def _near(self, q: Vector, multipliers: Vector, moved: Matrix, name: str) -> Matrix:
+        """Return an array of the equations at k places beside q, shape (k, ...), zero where it has no value."""
+        with np.errstate(all="ignore"):
+            found = self._at(q[:, None] + moved, np.outer(multipliers, np.ones(moved.shape[1])))[name]
+        return np.nan_to_num(np.moveaxis(found, -1, 0), nan=0.0, posinf=0.0, neginf=0.0)
 
     def _solved(self, q: Matrix) -> Iterator[tuple[Vector, Vector]]:
         """Return solutions by Newton's method from k starting points, shape (n, k).
@@ -400,11 +437,18 @@ class _Search:
         """Set entries at the level of rounding errors to zero."""
         return np.where(np.abs(q) <= ROUNDING * self._sizes, 0.0, q)
 
-    def _close(self, one: Vector, other: Vector, turns: Sequence[int]) -> bool:
+    def _unresolved(self, found: "_Solution", known: Sequence["_Solution"], turns: Sequence[int]) -> int | None:
+        """Return the place of a known solution that may be the same, as one of both is not isolated."""
+        for place, other in enumerate(known):
+            if not (found.isolated and other.isolated) and self._close(found.q, other.q, turns, UNRESOLVED):
+                return place
+        return None
+
+    def _close(self, one: Vector, other: Vector, turns: Sequence[int], distance: float = SAME) -> bool:
         apart = one - other
         apart[turns] -= TURN * np.round(apart[turns] / TURN)
         sizes = np.maximum(self._sizes, np.maximum(np.abs(one), np.abs(other)))
-        return bool(np.all(np.abs(apart) <= SAME * sizes))
+        return bool(np.all(np.abs(apart) <= distance * sizes))
 
     def _at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
         return self._equations.at(self._point(q, multipliers), self._independent)
@@ -420,6 +464,12 @@ class _Solution(NamedTuple):
     multipliers: Vector
     stiffness: Matrix
     bound: float  # of the stiffness: that of the changes of all forces, which may cancel along the manifold
+    error: float  # of the stiffness, by the uncertainty of the place
+
+    @property
+    def least(self) -> float:
+        """Stiffness that counts as positive."""
+        return max(LEAST_STIFFNESS * self.bound, self.error)
 
     @property
     def _principal(self) -> Vector:
@@ -427,7 +477,7 @@ class _Solution(NamedTuple):
 
     @property
     def isolated(self) -> bool:
-        return bool(self._principal.min(initial=np.inf) > LEAST_STIFFNESS * self.bound)
+        return bool(self._principal.min(initial=np.inf) > self.least)
 
     def same_family(self, other: "_Solution") -> bool:
         """Return True if neither is isolated and multipliers and stiffnesses agree.
@@ -447,18 +497,22 @@ def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
     """Decide the stability by the second variation, if any, and the eigenvalues of A."""
     if not forced:
         values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
-        if np.all(values > LEAST_STIFFNESS * found.bound):
+        if np.all(values > found.least):
             return Stability.STABLE
-    parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real)
+    entries = np.zeros_like(A)
+    entries[len(found.stiffness) :, : len(found.stiffness)] = found.error
+    parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real, entries)
     if np.any(certain & (parts > 0)):
         return Stability.UNSTABLE
     return Stability.ASYMPTOTIC if np.all(certain & (parts < 0)) else Stability.UNDECIDED
 
 
-def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vector]) -> tuple[Vector, np.ndarray]:
+def certain_distances(
+    A: Matrix, error: float, distance: Callable[[Vector], Vector], entries: Matrix | float = 0.0
+) -> tuple[Vector, np.ndarray]:
     """Return signed distances of eigenvalues, and True for those with certain signs.
 
-    They are distances from a line or a circle. The sign is certain if it holds under a relative error of A.
+    They are distances from a line or a circle. The sign is certain if it holds under the errors of A.
 
     Parameters
     ----------
@@ -467,12 +521,14 @@ def certain_distances(A: Matrix, error: float, distance: Callable[[Vector], Vect
         Relative.
     distance : callable
         Of the eigenvalues, complex, shape (s,). With a slope of at most one.
+    entries : float or ndarray, shape (s, s)
+        Further errors of the entries of A, absolute.
 
     Returns
     -------
     distances : ndarray, shape (s,)
     certain : ndarray of bool, shape (s,)
     """
-    values, moved, conditions = perturbed_eigenvalues(A, error)
+    values, moved, conditions = perturbed_eigenvalues(A, error, entries)
     distances = distance(values)
     return distances, (np.abs(distances) > moved) & (conditions < NEARLY_DEFECTIVE)

@@ -627,8 +627,8 @@ def _reachable(A: Matrix, B: Matrix) -> int:
     return reached.shape[1]
 
 
-def perturbed_eigenvalues(A: Matrix, error: float) -> tuple[Vector, Vector, Vector]:
-    """Return eigenvalues, their changes under an error of A, and their conditions.
+def perturbed_eigenvalues(A: Matrix, error: float, entries: Matrix | float = 0.0) -> tuple[Vector, Vector, Vector]:
+    """Return eigenvalues, their changes under errors of A, and their conditions.
 
     An eigenvalue moves by its condition number 1/|y^H x| times the perturbation, to first order (Golub & Van Loan,
     section 7.2).
@@ -638,6 +638,8 @@ def perturbed_eigenvalues(A: Matrix, error: float) -> tuple[Vector, Vector, Vect
     A : ndarray, shape (s, s)
     error : float
         Relative.
+    entries : float or ndarray, shape (s, s)
+        Further errors of the entries of A, absolute.
 
     Returns
     -------
@@ -645,8 +647,9 @@ def perturbed_eigenvalues(A: Matrix, error: float) -> tuple[Vector, Vector, Vect
     """
     if not A.size:
         return np.empty(0), np.empty(0), np.empty(0)
-    balanced = scipy.linalg.matrix_balance(A, permute=False)[0]
+    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     values, left, right = scipy.linalg.eig(balanced, left=True, right=True)
     with np.errstate(divide="ignore"):
         conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
-    return values, error * np.linalg.norm(balanced, 2) * conditions, conditions
+    moved = np.einsum("ij,ik,kj->j", np.abs(left), entries * np.outer(1 / scale, scale), np.abs(right))
+    return values, (error * np.linalg.norm(balanced, 2) + moved) * conditions, conditions

@@ -282,3 +282,34 @@ def test_the_fork_of_a_bead_on_a_turning_hoop_is_one_equilibrium():
         (-1, "undecided"),
         (1, "unstable"),
     ]
+
+
+@pytest.mark.parametrize(
+    ("details", "places"),
+    [
+        ("potential_energy = x^3", [0]),
+        ("potential_energy = (x^2 - 3)^3, forces = [-dot(x)]", [-np.sqrt(3), np.sqrt(3)]),
+        ("potential_energy = expand(-(x - 1/3)^4)", [1 / 3]),
+        ("potential_energy = expand((x - 1/3)^5)", [1 / 3]),
+        ("potential_energy = (exp(x) - 2)^3", [np.log(2)]),
+        ("potential_energy = -x^2 + sin(x)^2", [0]),
+    ],
+)
+def test_what_vanishes_twice_was_called_stable_or_found_70_times(details, places):
+    """The sign of a stiffness that is zero at the place was that of Newton's last error."""
+    found = of_particle(details, "x").equilibria()
+    double = [each for each in found if min(abs(each.coordinates["x"] - place) for place in places) < 1e-3]
+    assert sorted(each.coordinates["x"] for each in double) == pytest.approx(places, abs=1e-3)
+    assert {(each.stability, each.isolated) for each in double} == {(Stability.UNDECIDED, False)}
+
+
+@pytest.mark.parametrize(
+    ("potential", "expected"),
+    [
+        ("x^3/3 - x/10^8", [(-1e-4, Stability.UNSTABLE), (1e-4, Stability.STABLE)]),
+        ("(x^2 - 10^(-12))^2", [(-1e-6, Stability.STABLE), (1e-6, Stability.STABLE)]),
+    ],
+)
+def test_equilibria_next_to_each_other_are_decided(potential, expected):
+    found = of_particle(f"potential_energy = {potential}", "x").equilibria()
+    assert [(pytest.approx(each.coordinates["x"]), each.stability) for each in found] == expected
