@@ -13,7 +13,7 @@ from refusing import english_in
 from test_languages import CODE, prose
 
 import holonom
-from holonom.companion.own_scenes import or_failure
+from holonom.companion.own_scenes import or_reason
 from holonom.language import speaking, translated
 
 SCENES = sorted(Path(__file__).with_name("chinese").glob("*.mac"))
@@ -72,8 +72,8 @@ def test_an_error_on_a_page_is_wholly_in_chinese(asked):
     """The short form: two refusals of Maxima with hints, and a reason from Python."""
     scene = holonom.load(SCENES[0].with_name("reacting.mac"))
     options = {"sensitivities": "x"} if asked == "sensitivities" else {}
-    failed = or_failure(lambda: getattr(scene, "simulate" if options else asked)(**options))
+    reason = or_reason(lambda: getattr(scene, "simulate" if options else asked)(**options))
     with speaking("zh"):
-        text = translated(failed.reason)
-    assert text != failed.reason
+        text = translated(reason)
+    assert text != reason
     assert english_in(text) == []
