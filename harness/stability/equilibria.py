@@ -342,7 +342,7 @@ class _Search:
         )
 
     def _stiffness(self, q: Vector, multipliers: Vector) -> tuple[Matrix, float, float] | None:
-        """Return the change of the forces along the manifold, a bound for its size, and its error.
+        """Return the change of the forces along the manifold, its bound and its error.
 
         Its shape is (m, m). None in a singular configuration.
 
@@ -363,7 +363,9 @@ class _Search:
         return stiffness, float(bound), self._error(q, multipliers, tangent.basis, stiffness)
 
     def _error(self, q: Vector, multipliers: Vector, basis: Matrix, stiffness: Matrix) -> float:
-        """Return the change of the stiffness within the uncertainty of the place, and its rounding errors.
+        """Return the error of the stiffness.
+
+        It is the change within the uncertainty of the place, and rounding errors.
 
         By Kantorovich's theorem a solution is near if the stiffness changes little within Newton's step. At a multiple
         solution, also one by rounding errors, it changes more than it is.
@@ -386,7 +388,10 @@ class _Search:
         return float(np.max(np.linalg.norm(near - stiffness, 2, axis=(1, 2))) + np.max(rounding))
 
     def _near(self, q: Vector, multipliers: Vector, moved: Matrix, name: str) -> Matrix:
-        """Return an array of the equations at k places beside q, shape (k, ...), zero where it has no value."""
+        """Return an array of the equations at k places beside q, shape (k, ...).
+
+        It is zero where it has no value.
+        """
         with np.errstate(all="ignore"):
             found = self._at(q[:, None] + moved, np.outer(multipliers, np.ones(moved.shape[1])))[name]
         return np.nan_to_num(np.moveaxis(found, -1, 0), nan=0.0, posinf=0.0, neginf=0.0)
@@ -438,7 +443,7 @@ class _Search:
         return np.where(np.abs(q) <= ROUNDING * self._sizes, 0.0, q)
 
     def _unresolved(self, found: "_Solution", known: Sequence["_Solution"], turns: Sequence[int]) -> int | None:
-        """Return the place of a known solution that may be the same, as one of both is not isolated."""
+        """Return the index of a known solution nearby, if one of both is not isolated."""
         for place, other in enumerate(known):
             if not (found.isolated and other.isolated) and self._close(found.q, other.q, turns, UNRESOLVED):
                 return place
