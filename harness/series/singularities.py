@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import mpmath
 import numpy as np
@@ -38,6 +38,7 @@ REACH = 1e4  # of the unit of the time, if no coefficient determines a radius
 CORRECTIONS = 40
 CLOSE = 1e-6  # relative distance of two zeros that are one
 CONVERGED = 1e-7
+REFINEMENTS, REFINED = 12, 1e-10  # steps in many digits, and the last of them, relative to a zero
 DIGITS, CIRCLE, POINTS = 60, mpmath.mpf("1e-3"), 32  # of the test on a circle around a zero
 WEAKEST = mpmath.mpf("1e-25")  # of an output on that circle: a negative power that is none
 ROUNDED = mpmath.mpf("1e-45")  # of the largest output on that circle: one that is rounding
@@ -72,11 +73,14 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     if program is None or _switches(program):
         return radius
     bound = REACH if radius.estimate is None else radius.estimate + radius.uncertainty
-    zeros = sorted(_zeros(program, series, t0, bound), key=abs)
-    for zero in zeros[:MOST_TESTED]:
-        if abs(zero) <= bound and _is_singular(program, series, t0, zero):
+    zeros = sorted(_zeros(program, series, t0, bound), key=lambda zero: abs(zero.place))[:MOST_TESTED]
+    for zero in zeros:
+        if abs(zero.place) <= bound and _is_singular(program, series, t0, zero.place):
+            as_far = [each for each in zeros if abs(abs(each.place) - abs(zero.place)) <= CIRCLE * abs(zero.place)]
+            found = _refined(zero, series, t0)
             untold = radius in UNTOLD and _depends_on_state(program)
-            return _at_most(abs(zero), radius) if untold else _located(zero, zeros)
+            others = [_refined(each, series, t0).place for each in as_far]
+            return _at_most(abs(found.place), radius) if untold else _located(found, _each_once(others))
     return radius
 
 
@@ -88,12 +92,13 @@ def _at_most(bound: float, radius: Radius) -> Radius:
     return replace(radius, note=note)
 
 
-def _located(zero: complex, zeros: Sequence[complex]) -> Radius:
+def _located(zero: "_Refined", zeros: Sequence[complex]) -> Radius:
     """Return the radius of convergence, with all singularities at that distance."""
-    as_far = [z for z in zeros if abs(abs(z) - abs(zero)) <= CLOSE * abs(zero)]
-    kind = REAL_TIME if abs(zero.imag) <= CLOSE * abs(zero) else COMPLEX_PAIR
+    distance = abs(zero.place)
+    as_far = [z for z in zeros if abs(abs(z) - distance) <= max(CLOSE * distance, zero.error)]
+    kind = REAL_TIME if abs(zero.place.imag) <= max(CLOSE * distance, zero.error) else COMPLEX_PAIR
     note = translatable("the equations of motion are singular there; %(kind)s", kind=kind)
-    return Radius(abs(zero), CONVERGED * abs(zero), tuple(as_far), note, located=True)
+    return Radius(distance, zero.error, tuple(as_far), note, located=True)
 
 
 def _depends_on_state(program: Program) -> bool:
@@ -113,7 +118,17 @@ def _switches(program: Program) -> bool:
 # ---- functions whose zeros may be singularities ----
 
 
-def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, bound: float) -> Iterator[complex]:
+class _Zero(NamedTuple):
+    place: complex  # t - t0
+    function: Program  # that vanishes there
+
+
+class _Refined(NamedTuple):
+    place: complex
+    error: float
+
+
+def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, bound: float) -> Iterator[_Zero]:
     """Return the zeros of the critical functions, each once for each function."""
     critical = _critical_functions(program)
     if len(critical.outputs) * critical.operations > MOST_WORK:
@@ -125,7 +140,8 @@ def _zeros(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.
         part = computing(critical, {name})
         used = set().union(*(names_in(expression) for _, expression in part.assignments))
         within = _accurate_within([row for place, row in enumerate(motion) if used & _names_of(program, place)])
-        yield from _zeros_of(partial(_at, part, motion, float(t0)), min(bound, within))
+        places = _zeros_of(partial(_at, part, motion, float(t0)), min(bound, within))
+        yield from (_Zero(place, part) for place in places)
 
 
 def _names_of(program: Program, place: int) -> set[str]:
@@ -243,6 +259,39 @@ def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpm
         return list(run_program(program, inputs, MPMATH).values())
 
     return evaluate
+
+
+def _refined(zero: _Zero, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf) -> _Refined:
+    """Return a zero in many digits, with its error: the change by a shorter series.
+
+    If it is not found again, the singularity is within the circle of `_is_singular`.
+    """
+    with mpmath.workdps(2 * DIGITS):
+        shorter = [row[: int(len(row) * SHORTER)] for row in series]
+        place, other = (_multiple_zero(_in_digits(zero.function, rows, t0), zero.place) for rows in (series, shorter))
+        circle = CIRCLE * abs(zero.place)
+        if place is None or other is None or max(abs(place - zero.place), abs(other - zero.place)) > circle:
+            return _Refined(zero.place, float(circle))
+        return _Refined(complex(place), float(max(abs(place - other), CONVERGED * abs(place))))
+
+
+def _multiple_zero(evaluate: Evaluate, place: complex) -> Any:
+    """Return a zero of any multiplicity by Newton's method, or None if there is none.
+
+    The multiplicity is 1/(1 - f f''/f'^2) (Ralston & Rabinowitz, A First Course in Numerical Analysis, section 8.5).
+    """
+    z, step = mpmath.mpc(place), mpmath.mpf(10) ** (-DIGITS // 2) * abs(place)
+    for _ in range(REFINEMENTS):
+        (before,), (here,), (after,) = (evaluate(z + k * step) for k in (-1, 0, 1))
+        slope, curvature = (after - before) / (2 * step), (after - 2 * here + before) / step**2
+        below = slope**2 - here * curvature
+        if here == 0 or below == 0:
+            return z if here == 0 else None
+        change = here * slope / below
+        z -= change
+        if abs(change) <= REFINED * abs(z):
+            return z
+    return None
 
 
 def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex) -> bool:

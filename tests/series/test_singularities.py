@@ -100,3 +100,15 @@ def test_few_coefficients_and_a_located_singularity_give_an_upper_bound_alone():
     """x = 1/(1 - t)^2 nearly: t = 5 is beyond its pole."""
     found = radius(ONE.format(force="6*x^2 + 1/(5 - t)/1000", x=1, v=2), order=8)
     assert found.estimate is None
+
+
+@pytest.mark.parametrize(
+    ("force", "distance"), [("1/(1 + t^2)^3", 1), ("1/expand((1 + t^2)^3)", 1), ("1/expand((7/3 - t)^4)", 7 / 3)]
+)
+def test_a_multiple_zero_of_a_divisor_was_off_by_a_thousand_times_its_error(force, distance):
+    found = radius(ONE.format(force=force, x=1, v=0))
+    assert found.located
+    assert found.uncertainty < 1e-6
+    assert found.estimate == pytest.approx(distance, abs=found.uncertainty)
+    assert {round(abs(place), 9) for place in found.singularities} == {round(distance, 9)}
+    assert len(found.singularities) == 1 + ("t^2" in force)
