@@ -278,7 +278,7 @@ def _refined(zero: _Zero, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf
 def _multiple_zero(evaluate: Evaluate, place: complex) -> Any:
     """Return a zero of any multiplicity by Newton's method, or None if there is none.
 
-    The multiplicity is 1/(1 - f f''/f'^2) (Ralston & Rabinowitz, A First Course in Numerical Analysis, section 8.5).
+    The multiplicity is 1/(1 - f f''/f'^2) (Traub, Iterative Methods for the Solution of Equations, chapter 7).
     """
     z, step = mpmath.mpc(place), mpmath.mpf(10) ** (-DIGITS // 2) * abs(place)
     for _ in range(REFINEMENTS):
