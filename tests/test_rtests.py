@@ -7,11 +7,7 @@ from rtests import RtestFailed, run_rtest
 
 from holonom.failures import HolonomError
 
-LONG = ("free_motion", "simplify", "law_ends", "motion_verdict", "regularity", "elimination", "real_laws")
-RTESTS = [
-    pytest.param(file, marks=[pytest.mark.long] if file.stem.removeprefix("rtest_") in LONG else [], id=file.stem)
-    for file in sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
-]
+RTESTS = [pytest.param(file, id=file.stem) for file in sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))]
 
 
 @pytest.mark.parametrize("rtest", RTESTS)
