@@ -25,7 +25,7 @@ import tempfile
 import time
 import tomllib
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from itertools import islice
@@ -33,11 +33,12 @@ from pathlib import Path
 
 import psutil
 from changes import changes
+from executed import CHOSEN, Executed
 from scipy.stats import binomtest
-from sources import ROOT, Function, functions, nearest_tests, read
+from sources import END_TO_END, ROOT, Function, functions, nearest_tests, read
 
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-PYTEST = ["-q", "-x", "-n0", "-rfE", "-p", "no:cacheprovider", "-m", "not long or measured"]
+PYTEST = [*CHOSEN, "-x", "-n0", "-rfE"]
 SECONDS = 240  # of processor time for each process of a test file; the unchanged program takes less than a third
 LONGEST = 3600  # seconds by the clock, for what waits without computing
 
@@ -59,10 +60,9 @@ class Mutant:
         text = read(self.function.path)
         return text[: self.function.start] + self.body + text[self.function.end :]
 
-    def digest(self, tests: bool) -> str:
-        """Return the digest of the mutated source, and of its tests if these count."""
-        texts = [self.source, *(read(test) for test in nearest_tests(self.function) if tests)]
-        return hashlib.sha256("\0".join(texts).encode()).hexdigest()[:16]
+    def digest(self, tests: Iterable[str] = ()) -> str:
+        """Return the digest of the mutated source and of test files."""
+        return hashlib.sha256("\0".join([self.source, *map(read, tests)]).encode()).hexdigest()[:16]
 
 
 def draw(seed: str) -> Iterator[Mutant]:
@@ -96,7 +96,8 @@ class Copy:
         self.directory = directory
         for folder in ("harness", "maxima", "tests", "examples"):
             shutil.copytree(ROOT / folder, directory / folder, ignore=shutil.ignore_patterns("__pycache__"))
-        shutil.copy(ROOT / "pyproject.toml", directory)
+        for file in filter(Path.is_file, ROOT.iterdir()):  # some tests read the README
+            shutil.copy(file, directory)
         (directory / "site").mkdir()
         (directory / "site" / "holonom").symlink_to(directory / "harness")  # before the package that is installed
         own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1"}
@@ -119,27 +120,38 @@ class Copy:
         first = re.search(r"^(?:FAILED|ERROR) ([^\s[]+(?:\[.*?\])?)(?: - |$)", printed.decode(), re.MULTILINE)
         return first[1] if first else tests[-1]
 
-    def killer(self, mutant: Mutant) -> str:
+    def killer(self, mutant: Mutant, batches: Iterable[list[str]]) -> str:
         """Return the first test that fails with the mutant, or "" if it survives."""
-        file, tests = self.directory / mutant.function.path, nearest_tests(mutant.function)
-        rtests = [test for test in tests if test.endswith(".mac")]  # one process: most take less than its start
-        for batch in filter(None, [rtests, *([test] for test in tests if test not in rtests)]):
-            file.write_text(mutant.source, encoding="utf-8")
-            failed = self.failing(*batch)
+        file = self.directory / mutant.function.path
+        file.write_text(mutant.source, encoding="utf-8")
+        try:
+            return next(filter(None, (self.failing(*batch) for batch in batches)), "")
+        finally:
             file.write_text(read(mutant.function.path), encoding="utf-8")
-            if failed:
-                return failed
-        return ""
 
 
-def with_verdicts(mutants: list[Mutant], jobs: int) -> Iterator[tuple[Mutant, str]]:
+def batches_of(mutant: Mutant, executed: Executed) -> list[list[str]]:
+    """Return the tests of a mutant, those of one process together: the nearest, then a fixed few."""
+    if mutant.function.language == "py":
+        return [each for each in (executed.by(mutant.function), END_TO_END) if each]
+    tests = nearest_tests(mutant.function)
+    rtests = [test for test in tests if test.endswith(".mac")]
+    return [each for each in (rtests, [test for test in tests if test not in rtests]) if each]
+
+
+def files_of(batches: Iterable[list[str]]) -> list[str]:
+    """Return the files of tests."""
+    return sorted({test.partition("::")[0] for batch in batches for test in batch})
+
+
+def with_verdicts(mutants: Mapping[Mutant, list[list[str]]], jobs: int) -> Iterator[tuple[Mutant, str]]:
     """Yield each mutant with the test that kills it, as they come."""
     copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
 
     def outcome(mutant: Mutant) -> str:
         copy = copies.get()
         try:
-            return copy.killer(mutant)
+            return copy.killer(mutant, mutants[mutant])
         finally:
             copies.put(copy)
 
@@ -180,14 +192,16 @@ def main() -> None:
     seed = given.seed or earlier.get("seed") or str(time.time_ns())
     known = earlier.get("outcomes", {}) if earlier.get("seed") == seed else {}
     print(f"seed {seed}, {given.count} mutants of {len(functions())} functions")
-    mutants = {each: (each.digest(tests=False), each.digest(tests=True)) for each in islice(draw(seed), given.count)}
+    given.results.parent.mkdir(parents=True, exist_ok=True)
+    executed = Executed(given.results.parent, given.jobs)
+    batches = {mutant: batches_of(mutant, executed) for mutant in islice(draw(seed), given.count)}
+    mutants = {mutant: (mutant.digest(), mutant.digest(files_of(tests))) for mutant, tests in batches.items()}
     outcomes = {}
     for mutant, (own, with_tests) in mutants.items():
         killer, met = known.get(own, ("", ""))
         if killer or met == with_tests:
             outcomes[mutant] = killer
-    given.results.parent.mkdir(parents=True, exist_ok=True)
-    left = [mutant for mutant in mutants if mutant not in outcomes]
+    left = {mutant: tests for mutant, tests in batches.items() if mutant not in outcomes}
     for mutant, killer in with_verdicts(left, given.jobs):
         outcomes[mutant] = killer
         print(f"{len(outcomes)}/{len(mutants)} {f'killed by {killer}' if killer else 'SURVIVES'}: {mutant}", flush=True)

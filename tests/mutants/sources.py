@@ -7,14 +7,13 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
-from itertools import combinations
 from pathlib import Path
 
 from changes import blanked
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("crosscheck", "program", "series", "simulation", "sweeps")
-MOST = 5  # test files that name the function or its module
+MOST, FEW = 5, 4  # test files that name the function or its module, that are named after its subject
 END_TO_END = ["tests/examples/test_closed_forms.py", "tests/crosscheck/test_check.py"]
 END_TO_END += ["tests/program/test_same_numbers.py"]
 END_TO_END_OF_MAXIMA = ("tests/test_errata.py", "tests/test_free_motion.py")
@@ -90,25 +89,43 @@ def _of_python(path: str) -> Iterator[Function]:
 
 
 def nearest_tests(function: Function) -> list[str]:
-    """Return test files, the nearest first: mirror of the path, those that name it, then a fixed few end to end."""
-    python = function.language == "py"
-    found = [*_mirrors(Path(function.path)), *(_by_import if python else _by_call)(function)]
+    """Return test files of a function of Maxima, the nearest first, those that call it, some by subject."""
     refusing = ["tests/test_refusals.py"] if "refuse(" in function.body else []
-    return list(dict.fromkeys([*found, *refusing, *END_TO_END, *(() if python else END_TO_END_OF_MAXIMA)]))
+    found = [*_mirrors(Path(function.path)), *_by_call(function), *refusing, *_by_subject(function)]
+    found += [*END_TO_END, *END_TO_END_OF_MAXIMA]
+    return list(dict.fromkeys(found))
 
 
 def _mirrors(path: Path) -> list[str]:
     tests = ROOT / "tests"
     package = tests.joinpath(*path.parts[1:-1][:1])
-    choices = [tests / f"maxima/rtest_{path.stem}.mac"] if path.suffix != ".py" else []
-    choices += [*sorted(package.rglob(f"test_{path.stem}.py")), tests / f"test_{package.name}.py"]
+    choices = [tests / f"maxima/rtest_{path.stem}.mac", *sorted(package.rglob(f"test_{path.stem}.py"))]
+    choices += [tests / f"test_{package.name}.py"]
     return [choice.relative_to(ROOT).as_posix() for choice in choices if choice.is_file()]
 
 
 @cache
-def _words_of_tests(pattern: str) -> dict[str, frozenset[str]]:
-    files = sorted(file.relative_to(ROOT).as_posix() for file in (ROOT / "tests").rglob(pattern))
+def _words_of_rtests() -> dict[str, frozenset[str]]:
+    files = sorted(file.relative_to(ROOT).as_posix() for file in (ROOT / "tests").rglob("rtest_*.mac"))
     return {file: frozenset(re.findall(r"[\w%?]+", read(file))) for file in files}
+
+
+def _by_subject(function: Function) -> list[str]:
+    """Find the tests of Python whose file is named after something in the function, the rarest names first."""
+    found = {subject: path for subject, path in _subjects().items() if function in _functions_about(subject)}
+    return [found[subject] for subject in sorted(found, key=lambda each: len(_functions_about(each)))[:FEW]]
+
+
+@cache
+def _subjects() -> dict[str, str]:
+    files = [file for package in (*PACKAGES, "stability") for file in (ROOT / "tests" / package).rglob("test_*.py")]
+    return {file.stem.removeprefix("test_").rstrip("s"): file.relative_to(ROOT).as_posix() for file in sorted(files)}
+
+
+@cache
+def _functions_about(subject: str) -> frozenset[Function]:
+    others = (each for each in functions() if each.language != "py")
+    return frozenset(each for each in others if subject in f"{each}{each.body}".lower())
 
 
 def _by_call(function: Function) -> list[str]:
@@ -117,36 +134,8 @@ def _by_call(function: Function) -> list[str]:
     names, seen, found = {function.name}, set(), []
     while names and len(found) < MOST:
         called = {name.lstrip("$") for name in names}
-        tests = {test: len(words) for test, words in _words_of_tests("rtest_*.mac").items() if words & called}
+        tests = {test: len(words) for test, words in _words_of_rtests().items() if words & called}
         found += [test for test in sorted(tests, key=tests.get) if test not in found]
         seen |= names
         names = {each.name for each in others if each.words & (names | called)} - seen
     return found[:MOST]
-
-
-def _by_import(function: Function) -> list[str]:
-    """Find the tests that import a module, then those that import the modules that import it, and so on."""
-    own = {part for each in functions() if each.path == function.path for part in each.name.split(".")}
-    modules, seen, found = {_module(function.path)}, set(), []
-    while modules and len(found) < MOST:
-        tests = [test for test, named in _imported("tests", "test_*.py").items() if named & modules]
-        found += sorted(tests, key=lambda test: -len(_words_of_tests("test_*.py")[test] & own))
-        seen |= modules
-        modules = {_module(file) for file, named in _imported("harness", "*.py").items() if named & modules} - seen
-    return list(dict.fromkeys(found))[:MOST]
-
-
-def _module(path: str) -> tuple[str, str]:
-    return Path(path).parent.name, Path(path).stem
-
-
-@cache
-def _imported(folder: str, pattern: str) -> dict[str, frozenset[tuple[str, str]]]:
-    """Return the pairs of words on the import lines of each file, among them folder and name of each module."""
-    found = {}
-    for file in sorted(file.relative_to(ROOT).as_posix() for file in (ROOT / folder).rglob(pattern)):
-        lines = re.findall(r"^\s*(?:from|import) (.*)", read(file).replace("holonom", "harness"), re.MULTILINE)
-        here = [_module(file)[0]]
-        words = [here * line.startswith(".") + re.findall(r"\w+", line) for line in lines]
-        found[file] = frozenset(pair for each in words for pair in combinations(each, 2))
-    return found

@@ -80,8 +80,6 @@ def test_a_seed_gives_the_same_mutants_again():
         ("maxima/derivation/christoffel.mac::christoffel_first_kind", "tests/maxima/rtest_christoffel.mac"),
         ("maxima/program/power_series.lisp::append-rounded", "tests/maxima/rtest_power_series.mac"),
         ("maxima/free_motion/chain.mac::shown_modulo", "tests/test_free_motion.py"),
-        ("harness/crosscheck/verdict.py::_is_stable", "tests/crosscheck/test_verdict.py"),
-        ("harness/program/infix.py::add", "tests/program/test_c_function.py"),
     ],
 )
 def test_the_nearest_tests_of_a_function(function, test):
