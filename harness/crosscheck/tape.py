@@ -473,9 +473,11 @@ def _shares_of_power(
     taylor: Taylor, x: Sequence[Polynomial], value: Polynomial, adjoint: Polynomial
 ) -> list[Polynomial | None]:
     base, exponent = x
-    if len(exponent) == 1 and base[0] <= 0:  # the power is real for this exponent, and not for others near it
-        slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
-        return [taylor.multiply(adjoint, slope), None]
     share = taylor.multiply(adjoint, value)
-    logarithm = value_of(taylor, "Ln", [base])
-    return [taylor.divide(taylor.multiply(share, exponent), base), taylor.multiply(share, logarithm)]
+    # the power is real for this exponent, and not for others near it
+    of_exponent = None if base[0] <= 0 else taylor.multiply(share, value_of(taylor, "Ln", [base]))
+    if len(exponent) > 1:
+        return [taylor.divide(taylor.multiply(share, exponent), base), of_exponent]
+    # no division by a base that may be zero but for rounding
+    slope = taylor.scale(exponent[0], taylor.power(base, exponent[0] - 1)) if exponent[0] else (mp.zero,)
+    return [taylor.multiply(adjoint, slope), of_exponent]

@@ -90,3 +90,13 @@ def test_gradients_are_what_differences_go_to(tree):
         around = [value(tree, **{**known, name: number + side * step}) for side in (1, -1)]
         found = gradient.get(name, (mp.zero,))[0]
         assert abs(found - (around[0] - around[1]) / (2 * step)) < mp.mpf(10) ** -20
+
+
+def test_a_square_is_differentiated_where_its_base_is_zero_but_for_rounding():
+    """A division by the base made the check of a closed chain's series blind."""
+    tape, taylor = Tape(), Taylor(3)
+    place = tape.place(["Power", "x", 2])
+    base = (mp.mpf(10) ** -39, mp.one, mp.mpf(2), mp.mpf(3))
+    values = tape.values(taylor, {"x": base})
+    (slope,) = tape.gradient(taylor, values, {place: (mp.one,)}).values()
+    assert slope == tuple(2 * each for each in base)
