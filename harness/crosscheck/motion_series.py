@@ -29,6 +29,7 @@ from .motion_start import values_of_start
 from .motion_states import ComparedValue
 from .program_values import Values, run_along, symbols_of_tables, with_signs
 from .questions import ORDER, Answer, holds_special_functions
+from .ranks import Elimination
 from .report import CheckResult, Verdict
 from .taylor import Polynomial, Taylor
 
@@ -183,18 +184,19 @@ def _compared(
     Prescribed reactions are among the equations.
     """
     taylor, time = Taylor(ORDER), number(series.t0)
-    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 1), time, motion.parameters())
+    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 3), time, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
     curve["t"] = (time, mp.one)
     multipliers = {name: tuple(numbers(row)) for name, row in series.multipliers.items()}
     for name, prescribed in motion.reactions.at(taylor, time, motion.parameters()).items():
-        for k in range(ORDER - 1):
+        for k in range(ORDER + 1):
             true = _coefficient(prescribed, k)
             yield ComparedValue(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
     yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
-    yield from values_of_equations(motion, taylor, curve, ordered)
+    curve |= continued(motion, curve, tuple(series.coordinates), ordered, ORDER)
+    yield from values_of_equations(motion, Taylor(ORDER + 2), curve, ordered)
 
 
 def _values_of_forces(
@@ -216,7 +218,7 @@ def _values_of_forces(
     changes = _changes(motion, taylor, curve, multipliers, true, forces)
     for name, row in given.items():
         s = int(name.removeprefix("Lambda[").removesuffix("]")) - 1
-        for k, x in enumerate(numbers(row[: ORDER - 1])):
+        for k, x in enumerate(numbers(row)):
             yield ComparedValue(f"coefficient {k} of {name}", x, _coefficient(true[s], k), changes[s][k])
 
 
@@ -225,6 +227,72 @@ def _start(series: MotionSeries, time: mp.mpf) -> dict[str, mp.mpf]:
     for name, row in series.coordinates.items():
         found[name], found[f"dot({name})"] = numbers(row[:2])
     return found
+
+
+def continued(
+    motion: DescribedMotion, curve: Values, names: Sequence[str], multipliers: list[Polynomial], order: int
+) -> Values:
+    """Return series with the two powers that follow from the multipliers.
+
+    With A and J at the initial time they satisfy A x = r and J x = s, where r contains the last coefficients of the
+    multipliers. The solution of (A + w J^T J) x = r + w J^T s satisfies both only if these are right.
+
+    Parameters
+    ----------
+    motion : DescribedMotion
+        The reference.
+    curve : Values
+        Series of the time, parameters, controls and coordinates.
+    names : sequence of str
+        Coordinates, those of the system first. `curve` has their coefficients up to the order.
+    multipliers : list of Polynomial
+        Series of the multipliers, in order.
+    order : int
+        Order of the series.
+
+    Returns
+    -------
+    Values
+        Series of these coordinates.
+    """
+    rows = {name: tuple(curve[name][: order + 1]) for name in names}
+    columns = _slopes(motion, curve, rows, multipliers)
+    n = len(motion.system.coordinates)
+    weight = _largest(column[:n] for column in columns) / (_largest(column[n:] for column in columns) ** 2 or 1)
+
+    def combined(x: Sequence[mp.mpf]) -> list[mp.mpf]:
+        reactions = [mp.fsum(j * s for j, s in zip(column[n:], x[n:], strict=True)) for column in columns]
+        return [(x[i] if i < n else mp.zero) + weight * reaction for i, reaction in enumerate(reactions)]
+
+    matrix = list(zip(*map(combined, columns), strict=True))
+    equations = [{j: x for j, x in enumerate(row) if x} for row in matrix]
+    for k in (order - 1, order):
+        left = _residuals_at(motion, curve | rows, multipliers, k)
+        accelerations = mp.mpf(k + 2) * (k + 1) / 2
+        left = [*(x / accelerations for x in left[:n]), *left[n:]]
+        found = Elimination(equations, [-x for x in combined(left)]).solution()
+        rows = {name: (*row, found.get(i, mp.zero)) for i, (name, row) in enumerate(rows.items())}
+    return rows
+
+
+def _slopes(motion: DescribedMotion, curve: Values, rows: Values, multipliers: list[Polynomial]) -> list[list[mp.mpf]]:
+    """Return the columns of 2 A and J at the initial time, one below the other."""
+    before = _residuals_at(motion, curve, multipliers, 0)
+    moved = ({name: (*row[:2], row[2] + 1)} for name, row in rows.items())
+    after = (_residuals_at(motion, curve | each, multipliers, 0) for each in moved)
+    return [[x - y for x, y in zip(each, before, strict=True)] for each in after]
+
+
+def _residuals_at(motion: DescribedMotion, curve: Values, multipliers: list[Polynomial], k: int) -> list[mp.mpf]:
+    """Return power k of the equations of motion, then power k + 2 of the constraints."""
+    taylor = Taylor(k + 2)
+    values = motion.values(taylor, curve)
+    left = [_coefficient(each.value, k) for each in motion.equations(taylor, values, multipliers)]
+    return left + [_coefficient(values[place], k + 2) for place in motion.constraints]
+
+
+def _largest(columns: Iterable[Sequence[mp.mpf]]) -> mp.mpf:
+    return max((abs(x) for column in columns for x in column), default=mp.zero)
 
 
 def values_of_equations(
@@ -278,7 +346,7 @@ def _changes(
 
     The coefficients are rounded.
     """
-    found = [[mp.zero] * taylor.order for _ in before]
+    found = [[mp.zero] * (taylor.order + 1) for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
     for attempt in range(PERTURBATIONS):
         draw = random.Random(attempt)
@@ -289,7 +357,7 @@ def _changes(
         changed = curve | {q: moved(curve[q]) for q in motion.system.coordinates}
         after = made(motion.values(taylor, changed), list(map(moved, multipliers)))
         for own, *both in zip(found, before, after, strict=True):
-            for k in range(taylor.order):
+            for k in range(taylor.order + 1):
                 old, new = (_coefficient(each, k) for each in both)
                 own[k] = max(own[k], abs(new - old) / share)
     return found

@@ -25,7 +25,7 @@ from .irregular_point import IrregularPoint
 from .law import Law
 from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
 from .linearized_along import conditions_on_linearized_motion
-from .motion_series import digits_of, values_of_equations
+from .motion_series import continued, digits_of, values_of_equations
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .taylor import Polynomial, Taylor
@@ -91,8 +91,6 @@ def _unchecked(kind: Publication, content: Content) -> str:
             return "not checked: error" + (", stability of free deviations" if content["free"] else "")
         case Publication.EQUILIBRIA:
             return "not checked: starts, more, singular"
-        case Publication.SERIES if content["multipliers"]:
-            return f"not checked: powers {content['order'] - 1} and {content['order']} of multipliers, radius"
         case Publication.SERIES:
             return "not checked: radius"
     return ""
@@ -179,10 +177,11 @@ def _residuals(motion: DescribedMotion, content: Content, direction: str, step: 
         change = content["sensitivities"][derivative_name(name, direction)]
         return tuple(x + step * dx for x, dx in zip(numbers(row), numbers(change), strict=True))
 
-    curve = parameters | motion.law.at(Taylor(order + 1), time, parameters) | {"t": (time, mp.one)}
+    curve = parameters | motion.law.at(Taylor(order + 3), time, parameters) | {"t": (time, mp.one)}
     curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
     multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
-    yield from values_of_equations(motion, Taylor(order), curve, multipliers)
+    curve |= continued(motion, curve, tuple(content["coordinates"]), multipliers, order)
+    yield from values_of_equations(motion, Taylor(order + 2), curve, multipliers)
 
 
 def _small() -> mp.mpf:

@@ -38,11 +38,11 @@ def test_right_series_agree_and_wrong_ones_are_found(name):
 
 
 def changed(found: SceneSeries, draw: random.Random) -> SceneSeries:
-    """The series with one coefficient changed: of a coordinate, or of a multiplier where it is in the equations."""
+    """The series with one coefficient changed, of a coordinate or of a multiplier."""
     group = draw.choice(["coordinates", "multipliers"] if found.series.multipliers else ["coordinates"])
     rows = dict(getattr(found.series, group))
     name = draw.choice(list(rows))
-    place = draw.randrange(2, 8) if group == "coordinates" else draw.randrange(6)
+    place = draw.randrange(2 if group == "coordinates" else 0, 8)
     row = list(rows[name])
     row[place] = str(Fraction(row[place]) * Fraction(1001, 1000) + Fraction(1, 10**6))
     return replace(found, series=replace(found.series, **{group: rows | {name: tuple(row)}}))

@@ -137,6 +137,17 @@ def test_a_wrong_result_disagrees(result, seed):
         assert found.verdict is Verdict.DISAGREES, (path, last, part[last])
 
 
+def test_the_last_derivatives_of_multipliers_are_checked():
+    """The equations up to the order of the series contain all but two coefficients."""
+    scene = holonom.system(PENDULUM)
+    content = json.loads(json.dumps(series_document(scene.series(order=6, sensitivities=["m"]))))
+    for place in (-2, -1):
+        wrong = copy.deepcopy(content)
+        row = wrong["sensitivities"]["d(lambda1, m)"]
+        row[place] = str(Fraction(row[place]) + Fraction(1, 10**6))
+        assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES
+
+
 @pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 3))])
 def test_a_wrong_number_of_solutions_disagrees(seed):
     """Random potentials of degree four in each coordinate, with a count that leaves out or adds a solution."""
