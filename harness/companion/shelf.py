@@ -57,7 +57,7 @@ class Shelf:
         return self.chapters.get(name.rpartition("/")[2], Chapter())
 
     def values(self, name: str) -> Mapping[str, Any]:
-        """Return the results of a page's runs and the values that its head computes of them.
+        """Return a page's results, and the values that its head computes of them.
 
         Parameters
         ----------
