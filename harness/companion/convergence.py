@@ -60,7 +60,7 @@ def partial_sums(
     times : ndarray, shape (k,)
         Times.
     orders : iterable of int
-        Orders of the sums. The order of the whole series stands for the motion.
+        Orders of the sums. The order of the whole series represents the motion.
 
     Returns
     -------

@@ -388,7 +388,7 @@ class _Search:
         return float(np.max(np.linalg.norm(near - stiffness, 2, axis=(1, 2))) + np.max(rounding))
 
     def _near(self, q: Vector, multipliers: Vector, moved: Matrix, name: str) -> Matrix:
-        """Return an array of the equations at k places beside q, shape (k, ...).
+        """Return an array of the equations at k places near q, shape (k, ...).
 
         It is zero where it has no value.
         """

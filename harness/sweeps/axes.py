@@ -287,7 +287,7 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     Raises
     ------
     HolonomError
-        If a parameter is varied twice or none is, if there are too many rows, or if size or seed is no such number.
+        If a parameter is varied twice or none is, if there are too many rows, or if size or seed is not such a number.
     """
     for name, given, least in (("size", size, 1), ("seed", seed, 0)):
         if given is not None and not (isinstance(given, Integral) and given >= least):
