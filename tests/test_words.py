@@ -134,7 +134,6 @@ ALLOWED = {
     r"at (?:the|a) start|of (?:the|a) start|from the start": {
         "harness/headless.lisp": "a place in a file",
         "harness/simulation/sensitivities.py": "the beginning of a part",
-        "harness/companion/excerpts.py": "a place in a file",
     },
 }
 # Chinese words for those of the glossary, in catalogs and README.zh.md.

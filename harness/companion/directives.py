@@ -4,8 +4,9 @@
 equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
 templates. ``{show}`` without one takes a part of a template as its content. ``{run-figure} NAME`` is a figure of the
 chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
-``{exercise} GRADE`` is a question with its ``{answer}``. ``{chapter}`chapter {number} <NAME>` `` is a link to a chapter
-with its number; Sphinx's ``numref`` would read all pages for every build.
+``{exercise} GRADE`` is a question, ``{answer}`` the answer to the question in the same place of their order.
+``{chapter}`chapter {number} <NAME>` `` is a link to a chapter with its number; Sphinx's ``numref`` would read all pages
+for every build.
 """
 
 from gettext import NullTranslations
@@ -37,7 +38,7 @@ from .stored_results import Results, digest_of_all
 
 GRADES = 3
 BOOK = "book"
-APART, FIGURE = "apart", "run-figure"  # classes of nodes until a page is read, with its translations
+FIGURE = "run-figure"  # class of nodes until a page is read, with its translations
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".results"  # the folder of results that a later build takes
@@ -151,12 +152,12 @@ class RunFigure(SphinxDirective):
 
 
 class Exercise(SphinxDirective):
-    """A question, with its grade and its answer."""
+    """A question, with its grade and a link to its answer."""
 
     required_arguments, has_content = 1, True
 
     def run(self) -> list[nodes.Node]:
-        """Return the question with its answer in it.
+        """Return the question.
 
         Returns
         -------
@@ -173,7 +174,7 @@ class Exercise(SphinxDirective):
 
 
 class Answer(SphinxDirective):
-    """An answer, folded."""
+    """The answer of the exercise with the same number, folded."""
 
     has_content = True
 
@@ -188,8 +189,7 @@ class Answer(SphinxDirective):
         number = 1 + self.env.new_serialno("answer")
         title = gettext("Answer")
         begin = f'<details id="answer-{number}"><summary>{title} {number}</summary><div class="answer">'
-        parts = _html(begin), *self.parse_content_to_nodes(), _html("</div></details>")
-        return [nodes.container("", *parts, classes=[APART])]
+        return [_html(begin), *self.parse_content_to_nodes(), _html("</div></details>")]
 
 
 def _html(text: str) -> nodes.raw:
@@ -199,26 +199,12 @@ def _html(text: str) -> nodes.raw:
 
 def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
     """Put the picture of each figure, with its alternative text, before the caption."""
-    for found in _containers(tree, FIGURE) if not _collecting(app) else ():
+    figures = [each for each in tree.findall(nodes.container) if FIGURE in each["classes"]]
+    for found in figures if not _collecting(app) else ():
         (words, *caption), file = found.children, found["file"]
         text = escape(Markup(words.astext()).striptags())
         begin = f'<figure id="fig-{found["name"]}"><a href="{file}"><img src="{file}" alt="{text}" /></a><figcaption>'
         found.parent.replace(found, [_html(begin), *caption, _html("</figcaption></figure>")])
-
-
-def _put_answers_apart(app: Sphinx, tree: nodes.document) -> None:
-    """Move the answers of a page to a section at its end."""
-    section = nodes.section("", nodes.title("", gettext("Answers")), ids=["answers"])
-    for found in _containers(tree, APART):
-        found.parent.remove(found)
-        section += found.children
-    if len(section) > 1:
-        next(tree.findall(nodes.section)).append(section)
-
-
-def _containers(tree: nodes.document, kind: str) -> list[nodes.container]:
-    """Return the containers of a class."""
-    return [each for each in tree.findall(nodes.container) if kind in each["classes"]]
 
 
 def _collecting(app: Sphinx) -> bool:
@@ -357,5 +343,4 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("missing-reference", _chapter_with_number)
     app.connect("html-page-context", _finish_page)
     app.connect("doctree-read", _finish_figures)
-    app.connect("doctree-read", _put_answers_apart, priority=400)  # before the contents are collected
     return {"parallel_read_safe": False, "parallel_write_safe": True}

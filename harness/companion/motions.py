@@ -12,7 +12,7 @@ from ..program.request import Request
 from ..program.sign_pattern import drawing_at_any_time
 from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
-from ..simulation.result import Report, Simulation
+from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
 from .runs import DEFAULT_LIMITS, NO_SETTINGS, Settings
 
@@ -30,11 +30,6 @@ class Motion:
     title: str
     film: Film | None  # None if the system has no drawing
     simulation: Simulation  # coordinates and multipliers
-
-    @property
-    def report(self) -> Report:
-        """The accuracy of the motion."""
-        return self.simulation.report
 
 
 def motion(

@@ -12,26 +12,17 @@ from numpy.typing import NDArray
 from sympy import Expr
 
 from ..explanations import advice, engine_text, notes  # noqa: F401
+from ..failures import ErrorKind, HolonomError
 from ..figures import benchmark, curves, drawing, motion
 from ..files import shared
 from ..free_motion import UniversalLaw
 from ..language import gettext, ngettext, spoken, translated
+from ..maxima import statement_ends
 from ..number_texts import number
 from ..program.motion_program import Program
 from ..program.targets import javascript
 from ..record import Scene
-from . import (
-    TEMPLATES,
-    cards,
-    convergence,
-    excerpts,
-    expressions,
-    mathematics,
-    motions,
-    power,
-    table,
-    worked_example,
-)
+from . import EXAMPLES, TEMPLATES, cards, convergence, expressions, mathematics, motions, power, table, worked_example
 from .cards import Card
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
@@ -39,7 +30,7 @@ NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(
 NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
-MODULES = (benchmark, curves, drawing, motion, cards, convergence, excerpts, expressions, mathematics, motions, power)
+MODULES = (benchmark, curves, drawing, motion, cards, convergence, expressions, mathematics, motions, power)
 MODULES += (worked_example,)
 NAMED = {"Panel": curves.Panel, "TIMES": benchmark.TIMES, "linspace": np.linspace, "array": np.array}
 NAMED |= {"exhibits": table("gallery")["exhibit"]}
@@ -80,6 +71,33 @@ def environment(language: str) -> jinja2.Environment:
         macros = environment.get_template(library).module
         environment.globals |= {name: macro for name, macro in vars(macros).items() if not name.startswith("_")}
     return environment
+
+
+def excerpt(file: str, name: str) -> str:
+    """Return the statement of an example that assigns a name.
+
+    Parameters
+    ----------
+    file : str
+        Scene file, relative to the folder of the examples.
+    name : str
+        Name that the statement assigns, at the beginning of a line.
+
+    Returns
+    -------
+    str
+        Lines as they are in the file.
+
+    Raises
+    ------
+    HolonomError
+        The file does not assign the name.
+    """
+    text = "\n" + (EXAMPLES / file).read_text(encoding="utf-8")
+    start = text.find(f"\n{name} : ") + 1
+    if not start:
+        raise HolonomError(ErrorKind.DEFINITION_MISSING, file, name)
+    return text[start : next(statement_ends(text, start), len(text))]
 
 
 def _words_of(card: Card) -> Markup:

@@ -54,7 +54,8 @@ def draw_curves(panels: Sequence[Panel], xlabel: str) -> str:
                 style = {"color": PALETTE[place % len(PALETTE)], "linestyle": LINES[place % len(LINES)]}
                 axes.plot(times, values, label=label, **style)
             for place, (label, (x, y)) in enumerate(panel.points.items()):
-                axes.plot(x, y, MARKERS[place], color=PALETTE[-1 - place], fillstyle="none", label=label)
+                style = {"color": PALETTE[-1 - place], "markersize": 9 - 4 * place, "fillstyle": "none"}
+                axes.plot(x, y, MARKERS[place], label=label, **style)
             axes.set(ylabel=panel.ylabel, yscale=panel.scale, ylim=panel.limits)
             legend_above(axes)
         drawn[-1].set_xlabel(xlabel)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from holonom.companion import excerpts
-from holonom.companion.excerpts import excerpt
+from holonom.companion import pages
+from holonom.companion.pages import excerpt
 from holonom.failures import ErrorKind, HolonomError
 
 TEXT = """/* The head. */
@@ -19,7 +19,7 @@ g : 7$ h : y;
 @pytest.fixture(autouse=True)
 def file(tmp_path, monkeypatch):
     (tmp_path / "file.mac").write_text(TEXT)
-    monkeypatch.setattr(excerpts, "shared", lambda folder: tmp_path)
+    monkeypatch.setattr(pages, "EXAMPLES", tmp_path)
     return "file.mac"
 
 
