@@ -20,6 +20,7 @@ from .runs import Derived, Run, Settings, answer, derive
 TEXTS = Path(__file__).with_name("own")
 PAGES = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
 OPTIONS_OF_SERIES = (("order", 40),)
+NOT_OF_NAMES = re.compile(r"[^a-z0-9]+")
 CONTENTS = """
 ```{{toctree}}
 :caption: {file}
@@ -148,10 +149,7 @@ def texts_of_scenes(files: Sequence[Path]) -> dict[str, str]:
 
 
 def _prefixed(files: Sequence[Path]) -> list[tuple[str, Path]]:
-    """Return files with the prefixes of their page names, empty for one file."""
-    return [("" if len(files) == 1 else _prefix(file, place), file) for place, file in enumerate(files, 1)]
-
-
-def _prefix(file: Path, place: int) -> str:
-    """Return the unique prefix of the page names of a file."""
-    return f"{place}-{re.sub(r'[^a-z0-9]+', '-', file.stem.lower())}-"
+    """Return files with the unique prefixes of their page names, empty for one file."""
+    if len(files) == 1:
+        return [("", files[0])]
+    return [(f"{place}-{NOT_OF_NAMES.sub('-', file.stem.lower())}-", file) for place, file in enumerate(files, 1)]

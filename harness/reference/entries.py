@@ -60,7 +60,7 @@ class FunctionText:
         str
             Entries, separated by commas.
         """
-        by_name = {_name_of(entry): entry for entry in (*self.context, *replacing)}
+        by_name = {entry.partition("=")[0].strip(): entry for entry in (*self.context, *replacing)}
         return ",\n  ".join(by_name.values())
 
     def complete_call(self) -> str:
@@ -152,7 +152,3 @@ def _described() -> dict:
 def _function(name: str, described: dict) -> FunctionText:
     entries = tuple(structured(EntryText, entry, function=name) for entry in described["entry"])
     return structured(FunctionText, described, name=name, entries=entries)
-
-
-def _name_of(entry: str) -> str:
-    return entry.partition("=")[0].strip()

@@ -133,14 +133,15 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
     svg.append(line([[place([now, 0])[0], TOP], [place([now, 0])[0], HEIGHT - BELOW]], {stroke: "currentColor", opacity: 0.5}));
   }
 
-  function plane(svg, found) {
-    const reach = Math.min(3, ...found.map(([x, y]) => Math.hypot(x, y)));
-    const place = scaled(svg, [-3, 3], [-3, 3], true), [x, y] = place([0, 0]);
-    axes(svg, place, [-3, 0, 3], [-3, 0, 3], [svg.dataset.across, svg.dataset.upward]);
-    const [edge] = place([reach, 0]);
-    svg.append(element("circle", {cx: x, cy: y, r: edge - x, fill: found.length ? COLOURS[0] : "none", "fill-opacity": 0.15,
-      stroke: found.length ? COLOURS[0] : "none"}));
-    for (const [re, im] of found.filter(each => Math.hypot(...each) < 3)) for (const sign of [1, -1]) {
+  /* Singular times and the circle within which the series converges, at the scale of the circle. */
+  function plane(svg, found, radius) {
+    const limit = found.length ? 1.5*radius : 3, ends = [-limit, limit];
+    const place = scaled(svg, ends, ends, true), [x, y] = place([0, 0]), [edge] = place([radius, 0]);
+    axes(svg, place, [-limit, 0, limit], [-limit, 0, limit], [svg.dataset.across, svg.dataset.upward]);
+    if (found.length) {
+      svg.append(element("circle", {cx: x, cy: y, r: edge - x, fill: COLOURS[0], "fill-opacity": 0.15, stroke: COLOURS[0]}));
+    }
+    for (const [re, im] of found) for (const sign of [1, -1]) {
       const [p, q] = place([re, sign*im]);
       svg.append(line([[p - 4, q - 4], [p + 4, q + 4]], {stroke: COLOURS[1]}), line([[p - 4, q + 4], [p + 4, q - 4]], {stroke: COLOURS[1]}));
     }
@@ -189,11 +190,11 @@ if (typeof document === "object") document.addEventListener("DOMContentLoaded", 
   }
 
   function turn() {
-    const given = settings(), singular = knob.singularities(given);
+    const given = settings();
     followed = {...knob.follow(given), radius: knob.radius(given)};
     for (const label of form.querySelectorAll("label[data-law]")) label.hidden = label.dataset.law !== given.law;
     time.max = followed.seen.length - 1;
-    plane(document.getElementById("plane"), singular);
+    plane(document.getElementById("plane"), knob.singularities(given), followed.radius);
     show();
   }
 
