@@ -280,6 +280,11 @@ class ErrorKind(Enum):
         "the constraints lose rank at t = {time:.10g}: there is no tangent space to linearise in",
         "choose another time",
     )
+    NO_DERIVATIVES = (
+        "the equations of motion or outputs have no derivatives at t = {time:.10g}",
+        "choose another time",
+        "write the forces and outputs so that they have derivatives there",
+    )
     METHOD_GAVE_UP = ("{detail}", "use a larger tolerance", "use another method")
     NOT_LINEARIZED_ALONG = (
         "small deviations change too fast to be integrated: their error is estimated as {detail}",

@@ -319,12 +319,16 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     ------
     HolonomError
         A sign changes or slides there. The motion has releases or forces with multipliers, or cannot be continued so
-        far. The constraints are singular there.
+        far. The constraints are singular there, or derivatives have no value.
     """
     require_analytic(replace(problem, signs=(), tables=()))
     t, state = state_at(problem, at)
     require_between_switchings(problem, t, state)
-    return linearized(problem, equations, motion_at(problem, equations, t, state), t)
+    with np.errstate(invalid="ignore"):
+        found = linearized(problem, equations, motion_at(problem, equations, t, state), t)
+    if not all(np.isfinite(each).all() for each in (found.C, *found.D.values())):
+        raise HolonomError(ErrorKind.NO_DERIVATIVES, time=t)
+    return found
 
 
 def require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
@@ -409,11 +413,19 @@ def tangent_at(
         The constraints are singular there.
     """
     independent = problem.independent
-    here = equations.at(point, independent)
+    here = _evaluated(equations, point, independent)
     tangent = _tangent(equations, here)
     if tangent.rank < len(independent) and problem.obstruction is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     return here, tangent
+
+
+def _evaluated(equations: LinearEquations, point: Point, independent: Sequence[int]) -> Mapping[str, Matrix]:
+    """Evaluate the linearised equations where those of motion have values."""
+    here = equations.at(point, independent)
+    if not all(np.isfinite(each).all() for name, each in here.items() if not name.startswith("output")):
+        raise HolonomError(ErrorKind.NO_DERIVATIVES, time=point.t)
+    return here
 
 
 def _tangent(equations: LinearEquations, here: Mapping[str, Matrix]) -> Tangent:
@@ -566,7 +578,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
     n, rows, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     none = np.zeros(len(equations.found) + equations.drives)
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t), none)
-    here = equations.at(at_rest, rows)
+    here = _evaluated(equations, at_rest, rows)
     tangent = _tangent(equations, here)
     if not tangent.determined:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=t)

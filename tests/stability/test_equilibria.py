@@ -313,3 +313,9 @@ def test_what_vanishes_twice_was_called_stable_or_found_70_times(details, places
 def test_equilibria_next_to_each_other_are_decided(potential, expected):
     found = of_particle(f"potential_energy = {potential}", "x").equilibria()
     assert [(pytest.approx(each.coordinates["x"]), each.stability) for each in found] == expected
+
+
+def test_a_drag_without_a_derivative_at_rest_ended_in_an_internal_error():
+    with pytest.raises(HolonomError) as refused:
+        of_particle("potential_energy = x^2 + y^2, forces = -sqrt(dot(x)^2 + dot(y)^2)*[dot(x), dot(y)]").equilibria()
+    assert refused.value.kind is ErrorKind.NO_DERIVATIVES

@@ -282,6 +282,15 @@ def test_a_singular_configuration_is_refused():
     assert refused.value.kind is ErrorKind.NOT_LINEARIZED
 
 
+@pytest.mark.parametrize(("force", "observed"), [("sqrt(x)", ""), ("-x", ", observe = [r = sqrt(x)]")])
+def test_what_has_no_derivative_ended_in_an_internal_error(force, observed):
+    text = f"""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+        scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1]{observed})$"""
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(text).linearize()
+    assert refused.value.kind is ErrorKind.NO_DERIVATIVES
+
+
 def test_a_motion_that_ends_before_is_refused():
     ending = DOUBLE_PENDULUM.replace("x1 = 0, y1 = -1, x2 = 0", "x1 = 1, y1 = 0, x2 = 1").replace(
         "y2 = -2,", "y2 = -1,"
