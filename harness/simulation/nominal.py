@@ -315,7 +315,7 @@ def _from_zero(
     start, n = float(problem.start["t"]), len(problem.coordinates)
     scan = span * (SCAN if rates.of_time else SCAN[:1])
     push = largest(rates(start + scan[None, :, None], states[:, None, None], values))
-    felt = np.argmax(push >= FELT * np.nanmax(push, axis=0), axis=0)
+    felt = np.argmax(push >= FELT * np.fmax.reduce(push, axis=0), axis=0)
     begun = start + np.where(states[n:].any(axis=0), 0.0, scan[felt])
     times = begun + lengths * TIMES[:, None, None]
     first = rates(times, states[:, None, None], values)
@@ -325,7 +325,9 @@ def _from_zero(
     agree = np.logical_and.accumulate(agree[::-1])[::-1]
     longest = np.argmax(agree, axis=0)[None]
     size = np.take_along_axis(largest(way), longest, 0)[0]
-    return np.where(agree.any(axis=0), size, np.nanmean(push, axis=0) * span**2), lengths[longest[0], 0]
+    with np.errstate(invalid="ignore"):  # no push has a value in a singular configuration
+        mean = np.nansum(push, axis=0) / np.count_nonzero(~np.isnan(push), axis=0)
+    return np.where(agree.any(axis=0), size, mean * span**2), lengths[longest[0], 0]
 
 
 def _integral(rates: Matrix, lengths: Matrix) -> Matrix:

@@ -1,8 +1,12 @@
 """Nominal sizes: what functions change by with them."""
 
+import warnings
+
 import numpy as np
 import pytest
 
+import holonom
+from holonom.failures import HolonomError
 from holonom.program.precision import read_precision
 from holonom.simulation import nominal
 from holonom.simulation.nominal import Nominal, first_order_changes
@@ -38,3 +42,13 @@ def test_changes_that_are_not_finite_do_not_count_beyond_double_precision():
 
     found = first_order_changes(functions, times, states, Nominal(1.0, np.ones(2)))
     assert found[:, 0] == pytest.approx([3.0, 3.0])
+
+
+def test_a_singular_start_is_refused_without_warnings_of_numpy():
+    text = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+        forces = [1, 0], constraints = [x*y])$
+        s : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$"""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        with pytest.raises(HolonomError):
+            holonom.system(text).simulate()
