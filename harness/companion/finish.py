@@ -8,7 +8,7 @@ from markupsafe import Markup, escape
 TAG = re.compile(r"(<[^>]+>)")
 TAG_NAME = re.compile(r"</?([\w:]+)")
 UNLINKED = {"a", "code", "pre", "math", "h1", "h2", "h3", "h4", "style", "script", "svg", "button", "nav", "label"}
-REFERENCE = re.compile(r"\((\d{1,2}|3a)\)")
+REFERENCE = re.compile(r"(?<![0-9A-Za-z])\((\d{1,2}|3a)\)")  # and no issue of a journal, 28(1)
 EQUATION = re.compile(r'id="eq-(\d{1,2}|3a)"')
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 COLUMN = re.compile(r"<th [^>]*>(.*?)</th>", re.DOTALL)
