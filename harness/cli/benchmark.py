@@ -10,7 +10,7 @@ from ..options import options_of
 from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from .group import holonom
-from .options import asks_one_scene, present, publish, runs_scenes, takes, writes_json
+from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
@@ -45,9 +45,10 @@ def accuracy(
         done = study(scene_file, request, limits, plan, advance)
     present(study_document(done), json_file, show_study, done)
     if plot_file is not None:
-        from ..figures.benchmark import draw_study
+        from ..figures.benchmark import study_figure
+        from ..figures.style import Picture
 
-        publish(draw_study(done), plot_file)
+        Picture(study_figure(done)).save(plot_file)
     return 0
 
 
@@ -75,9 +76,10 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     content = {"cases": [_report_document(report) for report in reports]}
     present(published(Publication.HARD_CASES, content), json_file, show_stability, reports)
     if plot_file is not None:
-        from ..figures.benchmark import draw_stability
+        from ..figures.benchmark import stability_figure
+        from ..figures.style import Picture
 
-        publish(draw_stability(reports), plot_file)
+        Picture(stability_figure(reports)).save(plot_file)
     return FAILED if any(report.fails for report in reports) else 0
 
 

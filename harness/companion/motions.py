@@ -1,12 +1,10 @@
-"""Pictures of a motion: the drawing of the system, and curves."""
+"""A motion and the drawing of its system, of which pages make pictures."""
 
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 
 from ..figures.drawing import Film, film_of
-from ..figures.motion import motion_figure
-from ..figures.style import figure_style, svg_text
 from ..program.motion_problem import motion_problem
 from ..program.request import Request
 from ..program.sign_pattern import drawing_at_any_time
@@ -68,20 +66,3 @@ def motion(
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
     film = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
     return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
-
-
-def curves_drawn(simulation: Simulation) -> str:
-    """Draw the curves of a motion.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        The motion.
-
-    Returns
-    -------
-    str
-        SVG document.
-    """
-    with figure_style():
-        return svg_text(motion_figure(simulation))

@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from inspect import isfunction
+from typing import TYPE_CHECKING
 
 import jinja2
 import numpy as np
@@ -14,6 +15,7 @@ from sympy import Expr
 from ..explanations import advice, engine_text, notes  # noqa: F401
 from ..failures import ErrorKind, HolonomError
 from ..figures import benchmark, curves, drawing, motion
+from ..figures.style import Picture
 from ..files import shared
 from ..free_motion import UniversalLaw
 from ..language import gettext, ngettext, spoken, translated
@@ -24,6 +26,9 @@ from ..program.targets import javascript
 from ..record import Scene
 from . import EXAMPLES, TEMPLATES, cards, convergence, expressions, mathematics, motions, power, table, worked_example
 from .cards import Card
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LONGEST_COEFFICIENT = 12  # characters of an exact number in a table
 NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(.+)($)")
@@ -202,6 +207,11 @@ def _power_of_ten(value: float) -> Markup:
 def _drawing(name: str) -> str:
     """Return a drawing that is a template, with its labels in the current language."""
     return environment(spoken()).get_template(name).render()
+
+
+def _svg(figure: "Figure") -> str:
+    """Return a figure as the text of an SVG document."""
+    return Picture(figure)._repr_svg_()
 
 
 def _javascript(program: Program, name: str) -> Markup:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 from ..benchmark.hard_cases.case import CaseReport, Outcome, Result, Sweep
 from ..benchmark.work_precision.measurement import WHOLE_MOTION, Group, Measurement
 from ..language import gettext, translatable, translated
-from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure, svg_text
+from .style import BLUE, LINES, MARKERS, PALETTE, VERMILION, figure_style, legend_above, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
     from ..benchmark.work_precision.study import Study
 
@@ -49,8 +50,8 @@ PANELS = (
 TIMES = PANELS[0], PANELS[2]
 
 
-def draw_study(study: "Study", panels: Sequence[View] = PANELS, columns: int = 2) -> str:
-    """Draw a study in panels, as SVG.
+def study_figure(study: "Study", panels: Sequence[View] = PANELS, columns: int = 2) -> "Figure":
+    """Return the figure of a study, in panels.
 
     Parameters
     ----------
@@ -63,8 +64,7 @@ def draw_study(study: "Study", panels: Sequence[View] = PANELS, columns: int = 2
 
     Returns
     -------
-    str
-        SVG document.
+    Figure
 
     Raises
     ------
@@ -79,7 +79,7 @@ def draw_study(study: "Study", panels: Sequence[View] = PANELS, columns: int = 2
             axes.set_title(gettext(panel.title, until=float(study.until), time=_time_of_series(study)))
         figure.suptitle(gettext("What accuracy costs: %(scene)s", scene=study.scene), x=0.01, ha="left")
         figure.supxlabel(fill(str(study.machine), MACHINE * columns), x=0.01, ha="left", fontsize="small")
-        return svg_text(figure)
+        return figure
 
 
 def digits_of(measurement: Measurement) -> float:
@@ -125,8 +125,8 @@ WIDTH, HEIGHT_OF_ROW, HEIGHT_OF_SWEEP, MARGINS = 6.5, 0.2, 3.2, 1.4  # inches
 MOST_DIGITS = 16.5
 
 
-def draw_stability(reports: Sequence[CaseReport]) -> str:
-    """Draw the correct digits of every method in every case, as SVG.
+def stability_figure(reports: Sequence[CaseReport]) -> "Figure":
+    """Return the figure of the correct digits of every method in every case.
 
     Parameters
     ----------
@@ -135,8 +135,7 @@ def draw_stability(reports: Sequence[CaseReport]) -> str:
 
     Returns
     -------
-    str
-        SVG document.
+    Figure
 
     Raises
     ------
@@ -152,7 +151,7 @@ def draw_stability(reports: Sequence[CaseReport]) -> str:
         _draw_digits(panels[0], rows)
         for panel, sweep in zip(panels[1:], sweeps, strict=True):
             _draw_sweep(panel, sweep)
-        return svg_text(figure)
+        return figure
 
 
 def _rows(report: CaseReport) -> list[Result | str]:

@@ -41,7 +41,6 @@ PALETTE = (BLUE, VERMILION, GREEN, ORANGE, PURPLE, SKY)
 MARKERS = ("o", "s", "^", "D", "v", "P")
 LINES = ("-", "--", "-.", ":")
 RATE, NUMBERED = re.compile(r"(d{1,3})ot\((.+)\)"), re.compile(r"(.*?)(\d*)", re.DOTALL)
-WORD = re.compile(r"[A-Za-z]+\d*")
 DOTS = {"d": "\N{COMBINING DOT ABOVE}", "dd": "\N{COMBINING DIAERESIS}", "ddd": "\N{COMBINING THREE DOTS ABOVE}"}
 LOWERED = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 DOLLAR = re.compile(r"(?<!\\)\$")
@@ -167,21 +166,6 @@ def with_symbols(name: str) -> str:
         return letter + DOTS[rate[1]] + "".join(rest)
     stem, number = NUMBERED.fullmatch(name).groups()
     return _in_greek(stem) + number.translate(LOWERED)
-
-
-def text_with_symbols(text: str) -> str:
-    """Return a text with names of quantities in symbols.
-
-    Parameters
-    ----------
-    text : str
-        Words that are names of Greek letters are replaced.
-
-    Returns
-    -------
-    str
-    """
-    return WORD.sub(lambda word: with_symbols(word[0]), text)
 
 
 def _in_greek(name: str) -> str:

@@ -67,6 +67,12 @@ def test_figure_shows_every_method_and_is_the_same_twice(monkeypatch, tmp_path):
     assert "angle" in labels
 
 
+def test_the_suffix_of_a_figure_selects_png(monkeypatch, tmp_path):
+    """It was an SVG document under that name."""
+    assert run(monkeypatch, (PASSED,), "--plot", tmp_path / "figure.png") == 0
+    assert (tmp_path / "figure.png").read_bytes().startswith(b"\x89PNG")
+
+
 def test_figure_that_cannot_be_written_is_refused(monkeypatch, tmp_path, capsys):
     assert run(monkeypatch, (PASSED,), "--plot", tmp_path / "no" / "figure.svg") == 2
     assert re.search(message_of(ErrorKind.UNWRITABLE), capsys.readouterr().err)

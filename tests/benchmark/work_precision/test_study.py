@@ -24,7 +24,8 @@ from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
 from holonom.benchmark.work_precision.study import Plan, study, study_document
 from holonom.failures import ErrorKind
-from holonom.figures.benchmark import draw_study
+from holonom.figures.benchmark import study_figure
+from holonom.figures.style import Picture
 from holonom.formats import schema
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
@@ -135,8 +136,9 @@ def test_the_document_keeps_to_its_schema(done):
 
 
 @pytest.mark.long
-def test_the_figure_names_every_method_and_the_machine(done):
-    drawn = draw_study(done)
+def test_the_figure_names_every_method_and_the_machine(done, tmp_path):
+    Picture(study_figure(done)).save(tmp_path / "study.svg")
+    drawn = (tmp_path / "study.svg").read_text(encoding="utf-8")
     for text in (*{m.method for m in done.measurements}, done.machine.date, done.machine.versions["heyoka"]):
         assert text in drawn
 
