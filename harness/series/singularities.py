@@ -7,7 +7,7 @@ negative powers, and a shorter series gives the same ones. This also finds singu
 the coefficients.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
@@ -76,11 +76,12 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     zeros = sorted(_zeros(program, series, t0, bound), key=lambda zero: abs(zero.place))[:MOST_TESTED]
     for zero in zeros:
         if abs(zero.place) <= bound and _is_singular(program, series, t0, zero.place):
-            as_far = [each for each in zeros if abs(abs(each.place) - abs(zero.place)) <= CIRCLE * abs(zero.place)]
             found = _refined(zero, series, t0)
-            untold = radius in UNTOLD and _depends_on_state(program)
-            others = [_refined(each, series, t0).place for each in as_far]
-            return _at_most(abs(found.place), radius) if untold else _located(found, _each_once(others))
+            if radius in UNTOLD and _depends_on_state(program):
+                return _at_most(abs(found.place), radius)
+            as_far = [each for each in zeros if abs(abs(each.place) - abs(zero.place)) <= CIRCLE * abs(zero.place)]
+            refined = [found if each is zero else _refined(each, series, t0) for each in as_far]
+            return _located(found, _each_once(each.place for each in refined))
     return radius
 
 
@@ -226,7 +227,7 @@ def _zeros_of(function: Callable[[np.ndarray], np.ndarray], bound: float) -> lis
     return _each_once(z[near])
 
 
-def _each_once(zeros: np.ndarray) -> list[complex]:
+def _each_once(zeros: Iterable[complex]) -> list[complex]:
     distinct: list[complex] = []
     for zero in sorted(map(complex, zeros), key=abs):
         if all(abs(zero - other) > CLOSE * abs(zero) for other in distinct):
