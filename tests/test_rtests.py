@@ -7,10 +7,10 @@ from rtests import RtestFailed, run_rtest
 
 from holonom.failures import HolonomError
 
-RTESTS = [pytest.param(file, id=file.stem) for file in sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))]
+RTESTS = sorted(Path(__file__).with_name("maxima").glob("rtest_*.mac"))
 
 
-@pytest.mark.parametrize("rtest", RTESTS)
+@pytest.mark.parametrize("rtest", RTESTS, ids=lambda file: file.stem)
 def test_rtest(rtest: Path, record_property) -> None:
     try:
         tests = run_rtest(rtest)
