@@ -131,12 +131,13 @@ class Copy:
 
 
 def batches_of(mutant: Mutant, executed: Executed) -> list[list[str]]:
-    """Return the tests of a mutant, those of one process together: the nearest, then a fixed few."""
+    """Return the tests of a mutant, those of one process together: quick ones, then a file at a time."""
     if mutant.function.language == "py":
-        return [each for each in (executed.by(mutant.function), END_TO_END) if each]
-    tests = nearest_tests(mutant.function)
-    rtests = [test for test in tests if test.endswith(".mac")]
-    return [each for each in (rtests, [test for test in tests if test not in rtests]) if each]
+        quick, files = executed.by(mutant.function), END_TO_END
+    else:
+        files = nearest_tests(mutant.function)
+        quick = [test for test in files if test.endswith(".mac")]
+    return [each for each in (quick, *([file] for file in files if file not in quick)) if each]
 
 
 def files_of(batches: Iterable[list[str]]) -> list[str]:
