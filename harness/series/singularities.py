@@ -111,9 +111,24 @@ def _depends_on_state(program: Program) -> bool:
 
 
 def _switches(program: Program) -> bool:
-    return any(
-        call.operation in (Operation.ABS, Operation.SIGN) for _, e in program.assignments for call in calls_in(e)
-    )
+    return any(_is_switched(expression) for _, expression in program.assignments)
+
+
+def _is_switched(expression: Expression) -> bool:
+    """Return True for |x| and signs of x, but for those in real roots.
+
+    Roots are analytic where x is not zero.
+    """
+    match expression:
+        case Call(
+            Operation.MULTIPLY, (Call(Operation.SIGN, (x,)), Call(Operation.POWER, (Call(Operation.ABS, (y,)), _)))
+        ):
+            return x != y or _is_switched(x)
+        case Call(Operation.POWER, (Call(Operation.ABS, (x,)), Fraction(numerator=p, denominator=q))):
+            return p % 2 == 1 or q % 2 == 0 or _is_switched(x)
+        case Call(operation, arguments):
+            return operation in (Operation.ABS, Operation.SIGN) or any(map(_is_switched, arguments))
+    return False
 
 
 # ---- functions whose zeros may be singularities ----
@@ -341,6 +356,8 @@ def _arithmetic(functions: Any, number: Callable[[Fraction], Any], erf: Callable
             Operation.DIVIDE: lambda a, b: a / b,
             Operation.NEGATE: lambda a: -a,
             Operation.POWER: lambda a, b: a**b,
+            Operation.ABS: lambda a: a,  # in real roots, here up to a factor of modulus one
+            Operation.SIGN: lambda a: a**0,
             Operation.ERF: erf,
             Operation.ARCTAN2: lambda y, x: -1j * functions.log((x + 1j * y) / functions.sqrt(x * x + y * y)),
         },

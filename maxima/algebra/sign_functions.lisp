@@ -42,13 +42,14 @@
 
 ;; (s g)^(1/3) would become s^(1/3) g^(1/3), in which neither is a real number to a program where g is negative.
 (defun odd-root-of-size-p (e)
-  (and (not *written-openly*)
-       (eq (caar e) 'mexpt)
-       (consp (second e))
-       (eq (caar (second e)) 'mabs)
-       ($ratnump (third e))
-       (not (integerp (third e)))
-       (oddp ($denom (third e)))))
+  (and (not *written-openly*) (odd-root-p e) (consp (second e)) (eq (caar (second e)) 'mabs)))
+
+;; To Maxima it is the real root, of g < 0 as well: signum(g) |g|^(p/q) if p is odd, |g|^(p/q) if p is even.
+(defun odd-root-p (e)
+  "Whether e is g^(p/q) with an odd q."
+  (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))) (oddp ($denom (third e)))))
+
+(defun may-be-negative-p (g) (member ($csign g) '($neg $nz $pn $pnz)))
 
 (defun extremum (side arguments)
   (reduce #'(lambda (a b)

@@ -221,7 +221,19 @@
         ((string= head "Subscript")
          (list* (list (described-symbol (first arguments)) 'simp 'array)
                 (mapcar #'described-expression (rest arguments))))
+        ((real-root-written-p head arguments)
+         (apply #'power (mapcar #'described-expression (list (second (first arguments)) (third (second arguments))))))
         (t (applied-anew head (mapcar #'described-expression arguments)))))
+
+(defun real-root-written-p (head arguments)
+  "Whether a tree is x^(p/q), p and q odd, as mathjson.lisp writes it: Sign(x) times Power(Abs(x), p/q)."
+  (and (string= head "Multiply")
+       (equal (mapcar #'head-of arguments) '("Sign" "Power"))
+       (equal (second (second arguments)) (cons "Abs" (rest (first arguments))))
+       (equal (head-of (third (second arguments))) "Rational")
+       (every #'oddp (rest (third (second arguments))))))
+
+(defun head-of (tree) (if (consp tree) (first tree)))
 
 (defun applied-anew (head arguments)
   (let ((made (cdr (assoc head *written-otherwise* :test #'string=))))

@@ -116,7 +116,13 @@
 (defun write-power (base exponent out)
   (cond ((eq base '$%e) (write-tree "Exp" (list exponent) out))
         ((equal exponent '((rat simp) 1 2)) (write-tree "Sqrt" (list base) out))
+        ((and (odd-root-p (list '(mexpt) base exponent)) (may-be-negative-p (simplifya base nil)))
+         (write-real-root base exponent out))
         (t (write-tree "Power" (list base exponent) out))))
+
+(defun write-real-root (base exponent out)
+  (let ((root (list '(mexpt) (list '(mabs) base) exponent)))
+    (write-mathjson (if (oddp (second exponent)) (list '(mtimes) (list '(%signum) base) root) root) out)))
 
 (defun write-integer (n out)
   (if (< (abs n) (expt 2 53)) (princ n out) (write-number (princ-to-string n) out)))

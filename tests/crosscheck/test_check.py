@@ -9,6 +9,7 @@ import dataclasses
 import pytest
 import sympy as sp
 
+import holonom
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.draws import Draws
 from holonom.crosscheck.points import random_point
@@ -94,3 +95,15 @@ def test_a_record_forged_to_vanish_at_all_points_of_a_seed_disagrees_under_anoth
     assert verify(forged, "known").points == 8
     assert verify(forged, "known").verdict is not Verdict.DISAGREES
     assert verify(forged, fresh_seed()).verdict is Verdict.DISAGREES
+
+
+@pytest.mark.parametrize("force", ["-abs(x)^(2/3)*signum(x)", "x^(1/3)", "x^(-7/5)*dot(x)", "u^(1/3)/(m*x)^(2/3)"])
+def test_real_roots_of_negative_numbers_are_those_of_sympy(force):
+    """To Maxima (-8)^(1/3) is -2; to SymPy it is a complex number."""
+    report = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m], constraints = [y - u*x],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, forces = [{force}, 0])$
+motion : holonomic_scene(system, control_law = [u = -1 - t], parameter_values = [m = 2],
+  initial_state = [x = -1, dot(x) = 0], time_span = [0, 1])$""").check()
+    assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]
+    assert Verdict.UNDECIDED not in {found.verdict for found in report.verdicts}

@@ -1,11 +1,13 @@
 """The numerical motion, against closed forms, published solutions and conservation laws."""
 
+import math
 import warnings
 from fractions import Fraction
 
 import mpmath
 import numpy as np
 import pytest
+import scipy.special
 from problems import problem
 from refusing import failing
 
@@ -444,6 +446,19 @@ def test_simulate_rests_where_a_force_has_no_slope():
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-x^(1/3)])$
 motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""").simulate(samples=2)
     assert motion["x"][-1] == 0
+    assert motion.report.trusted
+
+
+def test_simulate_passes_where_a_force_has_no_slope():
+    """x'' = -2 |x|^(2/3) signum(x) from rest at x = -1: half a period is 2 Beta(3/5, 1/2) 3/5 sqrt(5/12)."""
+    half = 1.2 * math.sqrt(5 / 12) * scipy.special.beta(3 / 5, 1 / 2)
+    motion = holonom.system(f"""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-2*abs(x)^(2/3)*signum(x)])$
+motion : holonomic_scene(system, initial_state = [x = -1, dot(x) = 0], time_span = [0, {Fraction(3 * half)}])$""")
+    found = motion.simulate(samples=4)
+    assert found["x"] == pytest.approx([-1, 1, -1, 1], abs=1e-10)
+    assert found["dot(x)"] == pytest.approx([0, 0, 0, 0], abs=1e-10)
+    assert found.report.trusted
 
 
 def test_parameter_without_use_is_a_warning_once():

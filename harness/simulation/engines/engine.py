@@ -81,13 +81,15 @@ class Obstruction(HolonomError):
     ----------
     t : float
         The time that is reached.
+    case : Difficulty or None
+        The hard case that the motion is there, if it is one.
     cause : str
         A clause about that time.
     passed : callable
         Whether the obstruction lies behind a time and a state.
     """
 
-    def __init__(self, t: float, case: Difficulty, cause: str, passed: Callable[[Any, Numbers], bool]) -> None:
+    def __init__(self, t: float, case: Difficulty | None, cause: str, passed: Callable[[Any, Numbers], bool]) -> None:
         super().__init__(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, cause))
         self.case, self.cause, self.passed = case, cause, passed
 

@@ -32,7 +32,7 @@ class EngineSegment(NamedTuple):
     engine: EngineName
     start: float
     end: float
-    case: Difficulty | None = None  # why the robust engine continued; None where it did not
+    case: Difficulty | None = None  # why the robust engine continued; None where that is no hard case
     reason: str = ""  # why it was called, a clause
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_signs_known
+from ...program.motion_program import Operation, calls_in
 from ...program.precision import Precision
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
@@ -315,10 +316,18 @@ class ProgramEngine:
             return None
         vanished = self.watch.vanished(t, self.state)
         if vanished is None:
+            if self._has_roots:
+                return Obstruction(t, None, SHORT_STEPS, lambda at, _: at - t > SHORTER * self._longest)
             return HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, SHORT_STEPS))
         if vanished not in self._problem.reactions:
             return no_controls(t)
         return no_gradient(t, vanished)
+
+    @cached_property
+    def _has_roots(self) -> bool:
+        """True if forces may contain real roots, which have no slope at zero."""
+        calls = (call for _, expression in self._problem.motion.assignments for call in calls_in(expression))
+        return any(call.operation is Operation.ABS for call in calls)
 
     def _pivots_lose(self, t: Any, state: Numbers) -> float:
         """Return the relative error of the program's accelerations.
