@@ -109,7 +109,7 @@ def notes(report: "Report") -> Iterator[str]:
     str
         One message.
     """
-    called = [segment for segment in report.segments if segment.engine == FALLBACK and segment.case is not None]
+    called = [segment for segment in report.segments if segment.engine == FALLBACK and segment.reason]
     for segment in called[:LISTED]:
         yield gettext(
             "From t = %(start).6g to %(end).6g the robust engine takes over, because %(reason)s.",

@@ -181,7 +181,7 @@ def may_hide(program: Program, apart: Collection[str] = ("t",)) -> bool:
 
 
 def has_root_of(program: Program, names: Collection[str]) -> bool:
-    """Return True if a program contains the square root of a function of some inputs.
+    """Return True if a program contains a root of a function of some inputs.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def _contains(program: Program, moving: set[str], sought: Callable[[Call], bool]
 
 def _is_root(call: Call) -> bool:
     exponent = call.arguments[1] if call.operation is Operation.POWER else None
-    return call.operation is Operation.SQRT or (isinstance(exponent, Fraction) and exponent.denominator == 2)
+    return call.operation is Operation.SQRT or (isinstance(exponent, Fraction) and exponent.denominator > 1)
 
 
 def _is_faint(call: Call) -> bool:

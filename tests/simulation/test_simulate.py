@@ -17,6 +17,7 @@ from holonom.failures import ErrorKind, HolonomError, HolonomWarning
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.simulation.engines.program_engine import NO_SLOPE
 from holonom.simulation.hard_cases import Difficulty, MotionState, fastest_decay
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
@@ -441,12 +442,16 @@ motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span 
     assert found["dot(x)"][-1] ** 2 == pytest.approx(1 + 1.5 * found["x"][-1] ** (4 / 3), rel=1e-6)
 
 
-def test_simulate_rests_where_a_force_has_no_slope():
-    motion = holonom.system("""
-system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-x^(1/3)])$
+@pytest.mark.parametrize("force", ["-x^(1/3)", "sqrt(x)"])
+def test_simulate_rests_where_a_force_has_no_slope(force):
+    """Under sqrt(x), Norton's dome, x = t^4/144 begins so, too."""
+    motion = holonom.system(f"""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
 motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""").simulate(samples=2)
     assert motion["x"][-1] == 0
     assert motion.report.trusted
+    assert [segment.reason for segment in motion.report.segments] == [NO_SLOPE]
+    assert any(NO_SLOPE in note for note in notes(motion.report))
 
 
 def test_simulate_passes_where_a_force_has_no_slope():

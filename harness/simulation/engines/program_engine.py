@@ -20,6 +20,7 @@ from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_signs_known
 from ...program.motion_program import Operation, calls_in
 from ...program.precision import Precision
+from ..accuracy_check import has_root_of
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
@@ -38,6 +39,7 @@ SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
 LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
+NO_SLOPE = translatable("a force has no slope there, so that the motion may not be unique")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
 
 
@@ -288,8 +290,7 @@ class ProgramEngine:
             (outcome, _, step, *_), dense_steps = self._without_states(until, 1), []
         if outcome == self._failed:
             self._go_back(time_point, before)
-            reason = translatable("numbers leave the range of %(precision)s precision", precision=self.precision.name)
-            self._obstruction = self._obstruction_here(Difficulty.OVERFLOW, reason)
+            self._obstruction = self._obstruction_here(*self._why_no_step)
             return []
         self._keep_constraints()
         if not self._is_finite:
@@ -340,7 +341,18 @@ class ProgramEngine:
         error = np.max(np.abs(fixed - chosen), initial=0.0) / np.max(np.abs(chosen), initial=1e-300)
         return float(error) if np.isfinite(error) else np.inf
 
-    def _obstruction_here(self, case: Difficulty, reason: str) -> Obstruction:
+    @property
+    def _why_no_step(self) -> tuple[Difficulty | None, str]:
+        """The reason why no step leads from here: numbers overflow, but where a force is finite and has no slope."""
+        at, state = np.array([self.time]), np.reshape(self.state, (-1, 1))
+        known = np.isfinite(as_floats(self.solutions(at, state).accelerations)).all()
+        if known and has_root_of(self._problem.motion, self._problem.state):
+            return None, NO_SLOPE
+        return Difficulty.OVERFLOW, translatable(
+            "numbers leave the range of %(precision)s precision", precision=self.precision.name
+        )
+
+    def _obstruction_here(self, case: Difficulty | None, reason: str) -> Obstruction:
         """Return an obstruction that ends when the constraints become more independent."""
         least = self.watch.least(self.time, self.state)
         return Obstruction(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
