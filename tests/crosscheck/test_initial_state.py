@@ -184,3 +184,24 @@ def test_rounded_values_alone_satisfy_a_constraint_up_to_rounding(tmp_path):
     first, *others = fixed_values(scene).relations
     moved = Relation(first.left_tree, ["Add", first.right_tree, ["Power", 10, -45]])
     assert verdicts(record, description, with_relations(scene, (moved, *others)))["19"] is Verdict.DISAGREES
+
+
+ROUNDED = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - 1])$
+scene : holonomic_scene(system, initial_state = [x = 0.333333333333333333333333333333,
+  y = 0.942809041582063365867792482806, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+def test_another_correction_of_rounded_values_is_found(tmp_path):
+    file = tmp_path / "scene.mac"
+    file.write_text(ROUNDED)
+    record, description = derived_record(file), describe(file)
+    (scene,) = record.scenes
+    name, size = scene.correction
+    assert verdicts(record, description, scene)["12"] is Verdict.AGREES
+    for other in ((name, f"{1.03 * float(size)}"), (name, "1e-3"), ("dot(x)", size), None):
+        changed = dataclasses.replace(scene, correction=other)
+        assert verdicts(record, description, changed)["12"] is Verdict.DISAGREES, other

@@ -74,7 +74,9 @@ def test_a_heavier_bob_moves_the_same_and_pulls_the_more(unit):
 
 
 def test_the_inputs_begin_where_the_law_does(unit):
-    variables = {v.name: v for v in fmpy.read_model_description(str(unit)).modelVariables}
+    described = fmpy.read_model_description(str(unit))
+    variables = {v.name: v for v in described.modelVariables}
+    assert float(described.defaultExperiment.startTime) == 0
     assert [float(variables[name].start) for name in ("u", "dot(u)", "ddot(u)")] == [1.0, 0.1, 0.0]
     assert [name for name, v in variables.items() if v.causality == "input"] == ["u", "dot(u)", "ddot(u)"]
 

@@ -29,3 +29,9 @@ class OneControl(ControlMatrix):
 def test_rank_is_lost_when_all_rows_vanish_and_not_when_one_does(rows, lost):
     found = OneControl(*rows).lost(Step(0.0, 3.0, lambda times: np.zeros((2, len(times)))))
     assert found == (None if lost is None else pytest.approx(lost, rel=1e-8))
+
+
+def test_the_rank_is_compared_with_that_nearby_alone():
+    """The second row was large long ago."""
+    late = OneControl(lambda t: 101 - t, lambda t: np.exp(80 - t))
+    assert late.lost(Step(100.0, 103.0, lambda times: np.zeros((2, len(times))))) is None

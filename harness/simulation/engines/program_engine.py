@@ -343,7 +343,7 @@ class ProgramEngine:
 
     @property
     def _why_no_step(self) -> tuple[Difficulty | None, str]:
-        """The reason why no step leads from here: numbers overflow, but where a force is finite and has no slope."""
+        """The reason of a failed step: a finite force without slope, or an overflow."""
         at, state = np.array([self.time]), np.reshape(self.state, (-1, 1))
         known = np.isfinite(as_floats(self.solutions(at, state).accelerations)).all()
         if known and has_root_of(self._problem.motion, self._problem.state):
