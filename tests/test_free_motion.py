@@ -199,6 +199,20 @@ def test_a_start_found_to_sixty_digits_determines_the_controls_of_its_trajectory
     assert [u for _, u in found.samples] == pytest.approx(truth, rel=1e-12)
 
 
+def test_controls_in_roots_of_negative_numbers_are_followed(write_scene):
+    """Truth: x = t/10 - 1 and y = -1 - 5 t^2 along the free motion, and u = y^3/x."""
+    scene = write_scene("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [y - (u*x)^(1/3)])$
+motion : holonomic_scene(system, control_law = [u = 1 + t/10], initial_state = [x = -1, dot(x) = 1/10],
+  time_span = [0, 1])$""")
+    found = free_motion(scene, None, {}, Limits()).trajectory
+    assert len(found.samples) == 21
+    truth = [(-1 - 5 * time**2) ** 3 / (time / 10 - 1) for time, _ in found.samples]
+    assert [u for _, u in found.samples] == pytest.approx(truth, rel=1e-14)
+
+
 def test_reasons_are_said_in_another_language():
     found = asked("pendulum")
     with speaking("zh"):

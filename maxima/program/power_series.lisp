@@ -240,7 +240,7 @@
      #'(lambda (h n)
          (append-derivative
           h (if (eql n 0)
-                (function-at-start operator arguments assignment)
+                (function-at-start operator (mapcar #'argument-at-start terms arguments) assignment)
                 (sum-of-all (mapcar #'(lambda (g x) (function-derivative g x n)) gradient arguments))))))))
 
 (defun look-up-derivatives ()
@@ -256,12 +256,16 @@
 
 (defun start-value (symbol) (or (gethash symbol *start*) (number-at-start symbol symbol)))
 
+;; A number is not rounded: (-8b0)^(1/3) is -2b0, to a rounded exponent it is complex.
+(defun argument-at-start (term x)
+  (if (number-term-p term) (maxima-number (term-coefficient term)) (maxima-value (derivative x 0))))
+
 (defun function-at-start (operator arguments assignment)
-  (let* ((call (maxima-call operator (mapcar #'(lambda (x) (maxima-value (derivative x 0))) arguments)))
+  (let* ((call (maxima-call operator arguments))
          ($errormsg nil)
          (value (errset (simplifya call nil))))
     (if (or (null value)
-            (and (member operator '(mabs %signum)) (eql (derivative (car arguments) 0) 0)))
+            (and (member operator '(mabs %signum)) (zerop1 (car arguments))))
         (obstruction '$singular call assignment))
     (number-at-start (car value) assignment)))
 
