@@ -90,7 +90,7 @@ def _of_python(path: str) -> Iterator[Function]:
 
 def nearest_tests(function: Function) -> list[str]:
     """Return test files of a function of Maxima, the nearest first, those that call it, some by subject."""
-    refusing = ["tests/test_refusals.py"] if "refuse(" in function.body else []
+    refusing = ["tests/test_refusals.py"] if "refuse" in function.body else []
     found = [*_mirrors(Path(function.path)), *_by_call(function), *refusing, *_by_subject(function)]
     found += [*END_TO_END, *END_TO_END_OF_MAXIMA]
     return list(dict.fromkeys(found))
