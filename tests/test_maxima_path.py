@@ -146,3 +146,14 @@ print("the end")$
     assert "the end " in printed.splitlines()
     assert not re.search(r"\?\s*$", printed, re.MULTILINE)
     assert "error" not in printed
+
+
+def test_a_scene_under_prescribed_reactions_is_printed_with_the_accelerations_of_its_controls(batch):
+    printed = batch("""
+load(holonom)$
+system : holonomic_system(coordinates=[x,y], controls=[u], kinetic_energy=(dot(x)^2+dot(y)^2)/2, constraints=[y-u])$
+pulled : holonomic_scene(system, prescribed_reactions=[lambda1=3], initial_state=[x=1,dot(x)=0,y=0,dot(y)=0])$
+print_derivation(system, pulled)$
+""")
+    assert {"ddot(y) = 3", "ddot(u) = 3"} <= {line.strip() for line in printed.splitlines()}
+    assert "(18)  " not in printed
