@@ -8,6 +8,7 @@ import pytest
 from problems import problem
 from refusing import failing
 
+import holonom
 from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
@@ -109,3 +110,11 @@ def test_the_first_block_of_a_long_program_is_short():
     """Its steps are taken twice where it ends before a singular configuration."""
     short, long = (TaylorEngine(problem("linkage.mac", N=bars)) for bars in ("1", "8"))
     assert long._first_block < short._first_block == FINE_BLOCK
+
+
+@pytest.mark.parametrize("engine", ["taylor", pytest.param("runge-kutta", marks=pytest.mark.usefixtures("c_compiler"))])
+def test_numbers_whose_squares_overflow_are_finite(engine):
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x - y])$
+motion : holonomic_scene(system, initial_state = [x = 10^160, dot(x) = 10^158], time_span = [0, 10])$""")
+    assert motion.simulate(samples=2, engine=engine)["y"][-1] == pytest.approx(1.1e160, rel=1e-12)
