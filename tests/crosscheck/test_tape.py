@@ -6,10 +6,12 @@ from fractions import Fraction
 
 import pytest
 from mpmath import mp
+from refusing import failing
 
 from holonom.crosscheck.irregular_point import IrregularPoint
 from holonom.crosscheck.tape import Tape
 from holonom.crosscheck.taylor import Taylor
+from holonom.failures import ErrorKind
 
 TAYLOR = Taylor(0)
 COMPARED = {"Greater": operator.gt, "GreaterEqual": operator.ge, "Less": operator.lt, "LessEqual": operator.le}
@@ -100,3 +102,8 @@ def test_a_square_is_differentiated_where_its_base_is_zero_but_for_rounding():
     values = tape.values(taylor, {"x": base})
     (slope,) = tape.gradient(taylor, values, {place: (mp.one,)}).values()
     assert slope == tuple(2 * each for each in base)
+
+
+def test_a_name_without_a_value_is_refused():
+    with failing(ErrorKind.NOT_AN_EXPRESSION, "z"):
+        value(["Add", "x", "z"], x=1)
