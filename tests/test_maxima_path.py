@@ -157,3 +157,15 @@ print_derivation(system, pulled)$
 """)
     assert {"ddot(y) = 3", "ddot(u) = 3"} <= {line.strip() for line in printed.splitlines()}
     assert "(18)  " not in printed
+
+
+def test_the_size_of_a_correction_is_printed(batch):
+    """y = 0.942809041582063365867792482806 is read as a double, 2.4e-17 off the circle."""
+    printed = batch("""
+load(holonom)$
+system : holonomic_system(coordinates=[x,y], kinetic_energy=(dot(x)^2+dot(y)^2)/2, constraints=[x^2+y^2-1])$
+rounded : holonomic_scene(system, initial_state=[x=1/3,y=0.942809041582063365867792482806,dot(x)=0,dot(y)=0])$
+print_derivation(system, rounded)$
+""")
+    (size,) = re.findall(r"\by_0 .*?\b(\d\.\d+e-\d+)", " ".join(printed.split()))
+    assert float(size) == pytest.approx(2.4e-17, rel=0.1)

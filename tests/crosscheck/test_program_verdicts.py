@@ -96,6 +96,22 @@ def test_reactions_beside_servo_constraints_agree(write_scene):
         assert Verdict.DISAGREES in {each.found.verdict for each in found}, name
 
 
+@pytest.mark.parametrize(
+    ("solve", "verdict"), [(Solve.DIRECT, Verdict.DISAGREES), (Solve.ORTHOGONAL, Verdict.UNDECIDED)]
+)
+def test_a_program_of_a_regular_motion_has_values(programs, solve, verdict):
+    """The orthogonal solve, which needs positive masses, may have none."""
+    source, written = programs["pendulum"]
+    scene = written[0]
+    problem = scene.problems[solve]
+    name = problem.motion.assignments[0][0]
+    lost = ((name, Call(Operation.DIVIDE, (Fraction(1), Fraction(0)))), *problem.motion.assignments[1:])
+    wrong = replace(problem, motion=replace(problem.motion, assignments=lost))
+    found = verify_programs(source.description(), [replace(scene, problems={solve: wrong})], "lost")
+    assert verdict in {each.found.verdict for each in found}
+    assert verdict is Verdict.DISAGREES or Verdict.DISAGREES not in {each.found.verdict for each in found}
+
+
 @pytest.mark.parametrize("name", MUTATED)
 def test_every_wrong_program_is_found(programs, name):
     source, written = programs[name]

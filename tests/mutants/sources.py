@@ -125,7 +125,8 @@ def _subjects() -> dict[str, str]:
 @cache
 def _functions_about(subject: str) -> frozenset[Function]:
     others = (each for each in functions() if each.language != "py")
-    return frozenset(each for each in others if subject in f"{each}{each.body}".lower())
+    words = subject.split("_")
+    return frozenset(each for each in others if all(word in f"{each}{each.body}".lower() for word in words))
 
 
 def _by_call(function: Function) -> list[str]:
