@@ -2,7 +2,7 @@
 
 With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
 
-    dX/dt = F_x X + F_p.
+    dX/dt = F_x X + F_p    (`variational_equations`).
 
 Where a switching surface s(t, x, p) = 0 changes F, X jumps with the time of the switching (Hiskens & Pai, Trajectory
 sensitivity analysis of hybrid systems, IEEE Trans. Circuits Syst. I 47 (2000) 204):
@@ -14,31 +14,32 @@ If the velocities jump there as well, the first X- and F- are changed by the imp
 X satisfies the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from copy import copy
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.differentiation import derivative_name, differentiated
-from ..program.heyoka_function import heyoka_expressions, import_heyoka
-from ..program.motion_problem import MotionProblem, computing
+from ..program.differentiation import derivative_name
+from ..program.heyoka_function import import_heyoka
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import read_precision
 from ..program.sign_pattern import SLIDING, switching_function
-from .constraints.factorization import factored_constraints
 from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
 from .evaluation import Numbers
 from .impulses import moves_behind_impulse
-from .initial_tangents import ConstraintVariation, initial_tangents
-from .inputs import Inputs, heyoka_inputs
+from .initial_tangents import initial_tangents
+from .inputs import Inputs
 from .mode import Mode
 from .nominal import nominal_of
 from .recording import SampleBlock
-from .variation import TIME, Variation, seeds_of, size_of
+from .variation import TIME, Variation, size_of
+from .variational_equations import VariationalEquations
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
@@ -52,7 +53,7 @@ class _Segment(NamedTuple):
     start: float
     end: float
     mode: "_ModeVariation"
-    states: Any  # takes times, shape (k,), to rows of states and scaled derivatives
+    moves: Callable[[Numbers], Numbers]  # takes times, shape (k,), to derivatives of the state, shape (2n, p, k)
 
 
 class _Zero(NamedTuple):
@@ -67,85 +68,49 @@ class _ModeVariation:
     """The variational equations of one mode."""
 
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
-        self.mode, self.problem, self._directions = mode, mode.problem, directions
-        if self.problem.obstruction is not None:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=self.problem.obstruction)
-        if closed := [name for name in directions if name not in (*self.problem.parameters, *self.problem.state)]:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("the equations are made for one value of %(name)s", name=closed[0]),
-            )
-        self.constraints = ConstraintVariation(self.problem, directions)
+        self.mode, self.problem, self._directions, self._tol = mode, mode.problem, directions, tol
+        self.variation = VariationalEquations(self.problem, directions, mode.matrices)
         self.inputs = Inputs(self.problem)
-        self._tolerance = tolerance_of(self.problem, tol)
-        self._seeds = seeds_of(self.problem, directions, self.problem.state)
-        self._kind = directions, *(size_of(self.problem, name) for name in directions)
-        self._program = self.problem.once(("accelerations", *self._kind), self.problem.motion, self._differentiated)
         self._code = Code.QUICK
-        self._integrator = self._built()
 
-    def _differentiated(self) -> Program:
-        return differentiated(
-            computing(self.problem.motion, [f"ddot({q})" for q in self.problem.coordinates]), self._seeds
-        )
+    @cached_property
+    def _tolerance(self) -> dict[str, float]:
+        return tolerance_of(self.problem, self._tol)
 
-    def _built(self) -> Any:
-        kind = "variational", self._code, *self._kind, *self._tolerance.values()
+    @cached_property
+    def _integrator(self) -> Any:
+        kind = *self.variation.kind, self._code, *self._tolerance.values()
         return copy(self.problem.once(kind, self.problem.motion, self._compiled))
 
     def _compiled(self) -> Any:
-        heyoka, n = import_heyoka(), len(self.problem.coordinates)
-        moving = {
-            derivative_name(name, k): heyoka.expression(derivative_name(name, k))
-            for name in self.problem.state
-            for k in self._directions
-        }
-        given = heyoka_inputs(self.problem)
-        found = heyoka_expressions(self._program, given | moving)
-        variables = {name: given[name] for name in self.problem.state} | moving
-        rates = [given[name] for name in self.problem.state[n:]]
-        rates += [found[f"ddot({q})"] for q in self.problem.coordinates]
-        rates += [moving[derivative_name(v, k)] for v in self.problem.state[n:] for k in self._directions]
-        rates += [found[derivative_name(f"ddot({q})", k)] for q in self.problem.coordinates for k in self._directions]
-        equations = list(zip(variables.values(), rates, strict=True))
-        return heyoka.taylor_adaptive(equations, [0.0] * len(equations), **self._tolerance, **self._code.options)
+        equations = self.variation.equations()
+        return import_heyoka().taylor_adaptive(
+            equations, [0.0] * len(equations), **self._tolerance, **self._code.options
+        )
 
     def integrate(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Segment:
         """Integrate the derivatives through a part of the motion.
 
         `left` is the remaining time of the motion at the start of the part.
         """
-        integrator = self._integrator
+        integrator, count = self._integrator, len(state)
         integrator.time = start
         integrator.state[:] = np.concatenate([state, moves.ravel()])
-        contained = len(integrator.pars)
-        integrator.pars[:] = self.inputs.open_values(start, "right")[:contained]
+        integrator.pars[:] = self.variation.values(start, np.ones(moves.shape[1]))[: len(integrator.pars)]
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
                 detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
             )
-        piece = _Segment(start, end, self, between)
+        piece = _Segment(start, end, self, lambda t: np.reshape(between(t).T[count:], (*moves.shape, len(t))))
         self._compile_if_worthwhile(steps * left / (end - start))
         return piece
 
     def reached(self, shape: tuple[int, int]) -> tuple[Numbers, Numbers]:
         """Return the state and the derivatives at the end of the last part, projected."""
         state, moves = np.split(self._integrator.state.copy(), [len(self.problem.state)])
-        return state, self.corrected(self._integrator.time, state, moves.reshape(shape))
-
-    def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
-        """Return the nearest derivatives in the mass metric that satisfy the constraints."""
-        n, moves = len(self.problem.coordinates), moves.copy()
-        if not self.problem.multipliers:
-            return moves
-        here = self.mode.matrices.independent(t, state)
-        factors, independent = factored_constraints(here.mass, here.jacobian), list(self.problem.independent)
-        for half in (0, 1):
-            missed = self.constraints(t, state, moves)[half][independent]
-            moves[half * n :][:n] += np.array([factors.correction(column) for column in missed.T]).T
-        return moves
+        return state, self.variation.corrected(self._integrator.time, state, moves.reshape(shape))
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the time derivative of the state, shape (2n,)."""
@@ -201,15 +166,17 @@ class _ModeVariation:
         return np.array([t]), state[:, None], moves[:, :, None]
 
     def _compile_if_worthwhile(self, steps: float) -> None:
-        better = better_code(self._code, read_precision("double"))
-        if better and is_worthwhile(self._code, better, self._program.operations, steps, self._tolerance["tol"]):
+        better, operations = better_code(self._code, read_precision("double")), self.variation.program.operations
+        if better and is_worthwhile(self._code, better, operations, steps, self._tolerance["tol"]):
             last, self._code = self._integrator.state.copy(), better
-            self._integrator = self._built()
+            del self._integrator
             self._integrator.state[:] = last
 
 
 class Sensitivities:
     """The derivatives of one motion, integrated with it.
+
+    The Taylor engine integrates them in its own steps. With steps of other engines they are integrated after them.
 
     Parameters
     ----------
@@ -217,8 +184,6 @@ class Sensitivities:
         With its parameters open.
     directions : sequence of str
         Parameters. Coordinates and velocities, for their initial values.
-    begun : Mode
-        In which the motion begins.
     tol : float or None
         Tolerance of a step, or None for the precision of the numbers.
     end : float
@@ -227,12 +192,10 @@ class Sensitivities:
     Raises
     ------
     HolonomError
-        A direction is neither, the initial state cannot be adapted to it, or no motion program solves the equations.
+        A direction is neither, or forces contain multipliers.
     """
 
-    def __init__(
-        self, problem: MotionProblem, directions: Sequence[str], begun: Mode, tol: float | None, end: float
-    ) -> None:
+    def __init__(self, problem: MotionProblem, directions: Sequence[str], tol: float | None, end: float) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
             raise HolonomError(
@@ -247,33 +210,73 @@ class Sensitivities:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=translatable("forces contain multipliers"))
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
-        self._nominal = nominal_of(begun.problem)
-        self._here = self._of(begun)
-        self._time, self._state = float(problem.start["t"]), None
-        self._moves = initial_tangents(problem, begun.problem, self.directions)
-        self._steps, self._reached, self._last = 0, self._time, None
+        self._here: _ModeVariation | None = None
+        self._steps, self._together, self._last = 0, None, None
         self._pieces: list[_Segment] = []
 
+    def at(self, mode: Mode, t: Any, state: Numbers) -> Numbers:
+        """Return the derivatives of the state where an engine begins.
+
+        Parameters
+        ----------
+        mode : Mode
+            The mode from here on.
+        t : number
+            End of the steps that were taken, or the initial time.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+
+        Returns
+        -------
+        ndarray, shape (2n, p)
+
+        Raises
+        ------
+        HolonomError
+            The initial state cannot be adapted to a direction, or the derivatives are not unique or finite here.
+        """
+        if self._here is None:
+            self._here, self._nominal = self._of(mode), nominal_of(mode.problem)
+            self._time = self._reached = float(t)
+            self._state, self._moves = state, initial_tangents(mode.whole, mode.problem, self.directions)
+            return self._moves
+        self._advance()
+        if mode is not self._here.mode:
+            self._switch(mode, state)
+        return self._moves
+
     def take(self, step: Step) -> None:
-        """Take a step of the motion. Integrate the derivatives block by block.
+        """Take a step of the motion, with its derivatives if it has them.
+
+        Otherwise they are integrated block by block.
 
         Parameters
         ----------
         step : Step
             A step with its mode, which begins at the end of the last one.
         """
-        if step.mode is not self._here.mode:
-            self._advance()
-            self._switch(step)
-        elif self._steps >= BLOCK or self._at_knot(step):
+        start = np.array([step.start])
+        if self._here is None or step.mode is not self._here.mode:
+            self.at(step.mode, step.start, step.states(start)[:, 0])
+        if step.moves is not None:
+            self._take_together(step)
+            return
+        if self._together is not None or self._steps >= BLOCK or self._at_knot(step):
             self._advance()
         if not self._steps:
-            state = step.states(np.array([step.start]))[:, 0]
+            state = step.states(start)[:, 0]
             self._require_same_motion(state)
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
         if self._problem.signs or self._problem.released:
             self._last = step.states(np.array([step.end]))[:, 0]
+
+    def _take_together(self, step: Step) -> None:
+        """Take a step that has its derivatives. Those of a block are one piece."""
+        start, end, self._together = float(step.start), float(step.end), step
+        if self._pieces and self._pieces[-1].moves is step.moves:
+            start = self._pieces.pop().start
+        self._pieces.append(_Segment(start, end, self._here, step.moves))
 
     def samples(self, block: SampleBlock) -> dict[str, Numbers]:
         """Return the derivatives at samples by name, such as ``d(x, m)``.
@@ -328,8 +331,7 @@ class Sensitivities:
         for piece in self._pieces:
             inside = (piece.start <= times) & (times <= piece.end) & (piece.mode is here)
             if inside.any():
-                rows = np.array(piece.states(times[inside]))[:, len(states) :]
-                moves[:, :, inside] = rows.T.reshape(*self._moves.shape, -1)
+                moves[:, :, inside] = piece.moves(times[inside])
         if np.isnan(moves).any():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
@@ -343,7 +345,11 @@ class Sensitivities:
         return self._modes[mode]
 
     def _advance(self) -> None:
-        """Integrate the derivatives to the time of the motion and project them."""
+        """Bring the derivatives to the time of the motion."""
+        if self._together is not None:
+            step, self._together, end = self._together, None, np.array([self._together.end])
+            self._time, self._state, self._moves = float(step.end), step.states(end)[:, 0], step.moves(end)[..., 0]
+            self._last = self._state
         if not self._steps:
             return
         self._pieces.append(
@@ -369,10 +375,9 @@ class Sensitivities:
 
     # ---- switching ----
 
-    def _switch(self, step: Step) -> None:
-        """Jump with the time of a switching."""
-        before, after = self._here, self._of(step.mode)
-        t, old, state = self._time, self._last, step.states(np.array([step.start]))[:, 0]
+    def _switch(self, mode: Mode, state: Numbers) -> None:
+        """Jump with the time of a switching, to the state behind it."""
+        before, after, t, old = self._here, self._of(mode), self._time, self._last
         self._require_same_motion(old)
         surface = self._surface(before.mode, after.mode)
         if surface is not None:
@@ -382,7 +387,7 @@ class Sensitivities:
                 directions = *self.directions, TIME
                 moves = moves_behind_impulse(before.mode, after.mode, directions, t, (old, state), moves)
             self._moves = moves[:, :-1] + np.outer(moves[:, -1] - after.rates(t, state), delays)
-        self._state, self._moves, self._here = state, after.corrected(t, state, self._moves), after
+        self._state, self._moves, self._here = state, after.variation.corrected(t, state, self._moves), after
 
     def _surface(self, before: Mode, after: Mode) -> _Zero | None:
         """Return the zero between one mode and the next.

@@ -93,6 +93,13 @@ scene : holonomic_scene(system, control_law = [u = if t < T then a*t + t^2/2 els
   parameter_values = [a = 2, m = 1, M = 3/2, T = 1, e = 0], time_span = [0, 2],
   initial_state = [x = 3/5 + e, dot(x) = 1, X = 6/5, dot(X) = 1/2], initial_guess = [y = -4/5, Y = -8/5])$
 """
+APART = """
+system : holonomic_system(coordinates = [x, y, z], parameters = [e],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2,
+  potential_energy = 50^2*x^2/2 - 9^2*z^2/2 - 10^12*e*y)$
+scene : holonomic_scene(system, parameter_values = [e = 0], time_span = [0, 4],
+  initial_state = [x = 1, dot(x) = 0, y = 0, dot(y) = 0, z = 0, dot(z) = 0])$
+"""
 
 
 def circle(start: str) -> holonom.Scene:
@@ -347,3 +354,15 @@ def test_on_the_command_line(tmp_path, holonom_here):
         .splitlines()[0]
         .endswith('"d(x, k)","d(x, x)","d(dot(x), k)","d(dot(x), x)"')
     )
+
+
+def test_large_derivatives_do_not_coarsen_the_motion():
+    """The push e moves the second body by 5e11 after a second. The first one swings as without it."""
+    scene = holonom.system(APART)
+    plain, found = scene.simulate(samples=5), scene.simulate(samples=5, sensitivities=["e", "x", "z"])
+    t = plain["t"]
+    for motion in (plain, found):
+        assert motion["x"] == pytest.approx(np.cos(50 * t), abs=1e-12)
+    assert found["d(y, e)"] == pytest.approx(1e12 * t**2 / 2, rel=1e-14)
+    assert found["d(x, x)"] == pytest.approx(np.cos(50 * t), abs=1e-12)
+    assert found["d(z, z)"] == pytest.approx(np.cosh(9 * t), rel=1e-12)

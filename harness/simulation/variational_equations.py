@@ -1,0 +1,155 @@
+"""Variational equations of a motion, beside the equations of the motion itself.
+
+With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
+
+    dX/dt = F_x X + F_p.
+
+They are linear, so each column of X may be integrated in a unit of its own, with F_p in the same unit.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..failures import ErrorKind, HolonomError
+from ..language import translatable
+from ..program.differentiation import along, derivative_name, differentiated
+from ..program.heyoka_function import heyoka_expressions, import_heyoka
+from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_program import Name, Program
+from .constraints.factorization import factored_constraints
+from .constraints.stabilization import Equations
+from .evaluation import Numbers
+from .initial_tangents import ConstraintVariation
+from .inputs import Inputs, heyoka_inputs
+from .matrices import MotionMatrices
+from .variation import size_of
+
+GROWTH = 8  # digits of derivatives are lost in proportion to it, and blocks of steps shortened by its logarithm
+
+
+class VariationalEquations:
+    """The equations of a motion and of its derivatives.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        Without signs.
+    directions : sequence of str
+        Parameters, by their `size_of`. Coordinates and velocities, for their initial values.
+    matrices : MotionMatrices
+        Of the same motion.
+
+    Raises
+    ------
+    HolonomError
+        No motion program solves the equations, or it contains the value of a direction.
+    """
+
+    def __init__(self, problem: MotionProblem, directions: Sequence[str], matrices: MotionMatrices) -> None:
+        if problem.obstruction is not None:
+            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=problem.obstruction)
+        if closed := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable("the equations are made for one value of %(name)s", name=closed[0]),
+            )
+        self.problem, self.directions, self.kind = problem, tuple(directions), ("variational", *directions)
+        self.shape = len(problem.state), len(self.directions)
+        self._matrices, self._inputs = matrices, Inputs(problem)
+        self.constraints = ConstraintVariation(problem, self.directions)
+        parameters = [name for name in self.directions if name in problem.parameters]
+        self._seeds = {name: derivative_name(name, name) for name in parameters}
+        self._sizes = np.array([float(size_of(problem, name)) for name in parameters])
+        self._places = [self.directions.index(name) for name in parameters]
+        self.program = problem.once(self.kind, problem.motion, self._differentiated)
+
+    def _differentiated(self) -> Program:
+        own = {name: {name: Name(seed)} for name, seed in self._seeds.items()}
+        plain = computing(self.problem.motion, [f"ddot({q})" for q in self.problem.coordinates])
+        return differentiated(plain, along(self.problem.state, self.directions) | own)
+
+    def equations(self) -> Equations:
+        """Return heyoka's equations of the state and its derivatives.
+
+        Returns
+        -------
+        list of (expression, expression)
+            Variable and time derivative: the state, then each row of X.
+        """
+        heyoka, problem, n = import_heyoka(), self.problem, len(self.problem.coordinates)
+        given, count = heyoka_inputs(problem), len(problem.open_inputs)
+        seeds = {name: heyoka.par[count + place] for place, name in enumerate(self._seeds.values())}
+        names = [derivative_name(name, k) for name in problem.state for k in self.directions]
+        moving = {name: heyoka.expression(name) for name in names}
+        found = heyoka_expressions(self.program, given | moving | seeds)
+        variables = {name: given[name] for name in problem.state} | moving
+        accelerations = [f"ddot({q})" for q in problem.coordinates]
+        rates = [given[name] for name in problem.state[n:]] + [found[name] for name in accelerations]
+        rates += [moving[derivative_name(v, k)] for v in problem.state[n:] for k in self.directions]
+        rates += [found[derivative_name(name, k)] for name in accelerations for k in self.directions]
+        return list(zip(variables.values(), rates, strict=True))
+
+    def values(self, t: float, units: Numbers) -> Numbers:
+        """Return heyoka's parameters from a time on.
+
+        Parameters
+        ----------
+        t : float
+            The time.
+        units : ndarray, shape (p,)
+            Unit of each column of X.
+
+        Returns
+        -------
+        ndarray
+            Open inputs, then derivatives of the parameters by themselves.
+        """
+        return np.concatenate([self._inputs.open_values(t, "right"), self._sizes / units[self._places]])
+
+    def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
+        """Return the nearest derivatives in the mass metric that satisfy the constraints.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        moves : ndarray, shape (2n, p)
+            X.
+
+        Returns
+        -------
+        ndarray, shape (2n, p)
+        """
+        n, moves = len(self.problem.coordinates), moves.copy()
+        if not self.problem.multipliers:
+            return moves
+        here = self._matrices.independent(t, state)
+        factors, independent = factored_constraints(here.mass, here.jacobian), list(self.problem.independent)
+        for half in (0, 1):
+            missed = self.constraints(t, state, moves)[half][independent]
+            moves[half * n :][:n] += np.array([factors.correction(column) for column in missed.T]).T
+        return moves
+
+
+def units_of(state: Numbers, moves: Numbers) -> Numbers:
+    """Return units in which derivatives are smaller than the state.
+
+    Then the state decides about steps. They may grow by `GROWTH` until they are as large.
+
+    Parameters
+    ----------
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+    moves : ndarray, shape (2n, p)
+        X.
+
+    Returns
+    -------
+    ndarray, shape (p,)
+        Powers of two, not below one.
+    """
+    ratio = GROWTH * np.max(np.abs(moves), axis=0) / max(1.0, np.max(np.abs(state)))
+    return 2.0 ** np.ceil(np.log2(np.maximum(ratio, 1.0)))
