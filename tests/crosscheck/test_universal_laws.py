@@ -5,7 +5,7 @@ import sympy as sp
 
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import MechanicalSystem, dotted
-from holonom.crosscheck.universal_laws import ControlLaw, verify_law
+from holonom.crosscheck.universal_laws import ControlLaw, _within, verify_law
 
 
 def real(names: str) -> tuple[sp.Symbol, ...]:
@@ -87,3 +87,10 @@ def test_a_law_for_one_sign_of_a_parameter_is_tried_for_that_sign_alone():
     assert verify_law(SPRING, {}, ControlLaw(law, (k / m,))).verdict is Verdict.AGREES
     drawn = (verify_law(SPRING, {}, ControlLaw(law)).verdict for _ in range(16))
     assert Verdict.DISAGREES in drawn
+
+
+def test_times_are_drawn_within_the_span():
+    t, x = sp.symbols("t x", real=True)
+    drawn = [_within((sp.Integer(10), sp.Rational(21, 2)), {t: sp.Rational(k, 7), x: k}, t) for k in range(-14, 15)]
+    assert [point[t] for point in drawn] == [10 + sp.Rational(k + 14, 56) for k in range(-14, 15)]
+    assert [point[x] for point in drawn] == [*range(-14, 15)]
