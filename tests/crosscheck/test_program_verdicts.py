@@ -32,6 +32,12 @@ load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, k], kinetic_energy = m*(dot(x)^2 +
   dot(y)^2)/2, potential_energy = k*x^4, forces = [drag = [-abs(dot(x))*dot(x), 0]], constraints = [y - sin(u*x)])$
 """
+PENDULUM = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = 10*y,
+  constraints = [x^2 + y^2 - 1])$
+swing : holonomic_scene(system, initial_state = [x = 3/5, y = -4/5, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$
+"""
 KINDS = """
 load("holonom.mac")$
 system : holonomic_system(coordinates = [r, x, z], controls = [u, w, F], kinetic_energy = (dot(r)^2 + dot(x)^2 +
@@ -99,10 +105,9 @@ def test_reactions_beside_servo_constraints_agree(write_scene):
 @pytest.mark.parametrize(
     ("solve", "verdict"), [(Solve.DIRECT, Verdict.DISAGREES), (Solve.ORTHOGONAL, Verdict.UNDECIDED)]
 )
-def test_a_program_of_a_regular_motion_has_values(programs, solve, verdict):
+def test_a_program_of_a_regular_motion_has_values(write_scene, solve, verdict):
     """The orthogonal solve, which needs positive masses, may have none."""
-    source, written = programs["pendulum"]
-    scene = written[0]
+    source, (scene,) = asked(write_scene(PENDULUM))
     problem = scene.problems[solve]
     name = problem.motion.assignments[0][0]
     lost = ((name, Call(Operation.DIVIDE, (Fraction(1), Fraction(0)))), *problem.motion.assignments[1:])

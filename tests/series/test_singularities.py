@@ -2,9 +2,11 @@
 
 import math
 
+import mpmath
 import pytest
 
 import holonom
+from holonom.series.singularities import _multiple_zero
 
 ONE = """
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
@@ -112,3 +114,9 @@ def test_a_multiple_zero_of_a_divisor_was_off_by_a_thousand_times_its_error(forc
     assert found.estimate == pytest.approx(distance, abs=found.uncertainty)
     assert {round(abs(place), 9) for place in found.singularities} == {round(distance, 9)}
     assert len(found.singularities) == 1 + ("t^2" in force)
+
+
+def test_a_function_without_slope_has_no_multiple_zero():
+    """Newton's method cannot begin at a place where the derivatives vanish."""
+    assert _multiple_zero(lambda z: (mpmath.mpf(1),), 1j) is None
+    assert _multiple_zero(lambda z: (z * z - 4,), 2) == 2

@@ -272,7 +272,8 @@ def test_a_length_that_vanishes_on_the_way_ends_its_row_and_no_other(rows_of, sc
 
 
 def test_motions_that_switch_are_followed_one_by_one(rows_of, scenes):
-    found = columns(rows_of(scenes / "friction.mac", "final,max(x)", "mu=0.5:2:4").table(0, 4))
+    found = columns(rows_of(scenes / "friction.mac", "final,max(x),at(x,1/4)", "mu=0.5:2:4").table(0, 4))
+    assert found["at(x,1/4)"] == pytest.approx(1 / 4 - found["mu"] / 32, rel=1e-10)
     assert found["x"] == pytest.approx(1 / (2 * found["mu"]), rel=1e-10)  # v^2/(2 mu), then it sticks
     assert found["max(x)"] == pytest.approx(found["x"], rel=1e-10)
     assert (found["status"] == Status.OK).all()

@@ -11,9 +11,10 @@ from refusing import failing
 import holonom
 from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
+from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.engines.program_engine import FIRST_BLOCK, Obstruction
+from holonom.simulation.engines.program_engine import DECAYS_IN_A_RUN, FIRST_BLOCK, Obstruction, decay_until
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
 from holonom.simulation.hard_cases import Difficulty
@@ -118,3 +119,13 @@ def test_numbers_whose_squares_overflow_are_finite(engine):
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x - y])$
 motion : holonomic_scene(system, initial_state = [x = 10^160, dot(x) = 10^158], time_span = [0, 10])$""")
     assert motion.simulate(samples=2, engine=engine)["y"][-1] == pytest.approx(1.1e160, rel=1e-12)
+
+
+def test_stabilization_decays_as_often_in_every_span(write_scene):
+    late = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2)$
+motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [6, 10])$
+"""
+    motion = motion_problem(write_scene(late), Request(), Limits())
+    assert decay_until(10, motion, read_precision("double")) == pytest.approx(DECAYS_IN_A_RUN / 4)
