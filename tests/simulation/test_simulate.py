@@ -524,3 +524,9 @@ total(x) := x^2$
 system : holonomic_system(coordinates = [x], kinetic_energy = total(dot(x))/2, forces = [1])$
 motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""")
     assert scene.simulate(samples=2)["x"][-1] == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("step", ["0", "-1", "inf", "nan"])
+def test_a_longest_step_is_positive_and_finite(step):
+    with failing(ErrorKind.NOT_A_STEP, step):
+        simulate(problem("pendulum.mac", "swing_scene"), SimulationRequest(max_step=float(step)))
