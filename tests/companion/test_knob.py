@@ -32,7 +32,7 @@ UNTIL, SAMPLES = 2.0, 21
 RUN = """
 const knob = require(process.argv[1]);
 const [settings, until, samples] = JSON.parse(process.argv[2]);
-console.log(JSON.stringify({...knob.follow(settings, until, samples), radius: knob.radius(settings)}));
+console.log(JSON.stringify({seen: knob.follow(settings, until, samples), radius: knob.radius(settings)}));
 """
 
 
