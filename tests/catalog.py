@@ -46,13 +46,13 @@ JINJA = {
     "extensions": "jinja2.ext.i18n",
     "silent": "false",
 }
-SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls"}
-EXPECTED = {
-    "placeholders": re.compile(r"%(?:\(\w+\)[.\d]*[a-z]|%)"),
-    "marks": re.compile(r"<[^>!]+>"),
-    "formulas": re.compile(r"\$[^$]+\$"),
-    "code": re.compile(r"(?:\{\w+\})?`[^`]+`"),
-}
+SHOWN_IN_TOML = {"drawing", "curves", "words", "without_controls", "nothing"}
+EXPECTED = re.compile(
+    r"%(?:\(\w+\)[.\d]*[a-z]|%)"  # placeholders
+    r"|<[^>!]+>"  # marks
+    r"|\$[^$]+\$"  # formulas
+    r"|(?:\{\w+\})?`[^`]+`"  # code
+)
 """What a translation has in common with its message."""
 TRANSLATED = ("book", "manual", "own")  # folders of pages in other languages; the reference is in English
 SHOWN = re.compile(r"^```\{show\}\n(.*?)^```$", re.MULTILINE | re.DOTALL)
@@ -69,7 +69,7 @@ def collected() -> Catalog:
         for file in sorted(folder.rglob(pattern)):
             with file.open("rb") as text:
                 for _, message, comments, _ in extract(method, text, KEYWORDS, options=JINJA):
-                    catalog.add(message, None, [(_place(file), None)], auto_comments=comments)
+                    catalog.add(message, None, [(str(file.relative_to(PACKAGE.parent)), None)], auto_comments=comments)
     for kind in ErrorKind:
         for text in (kind.reason, *kind.hints):
             catalog.add(pattern_of(text), None, [("harness/failures.py", None)])
@@ -120,27 +120,19 @@ def _faults(message: Message) -> Iterator[str]:
         return
     if message.fuzzy:
         yield "fuzzy"
-    for what, pattern in EXPECTED.items():
-        wanted = _unchanged(pattern, _english(message))
-        for text in texts:
-            if (found := _unchanged(pattern, text)) != wanted:
-                yield f"{what} differ, {', '.join(sorted(found ^ wanted))}"
+    for text in texts:
+        if different := _unchanged(text) ^ _unchanged(_english(message)):
+            yield f"{', '.join(sorted(different))} differ"
 
 
-def _unchanged(pattern: re.Pattern, text: str) -> set[str]:
-    """What a text has of a kind, without the words that it defines and the names of chapters."""
-    return {found for found in pattern.findall(text) if not found.startswith(("{index}", "{chapter}"))}
+def _unchanged(text: str) -> set[str]:
+    """What a text has in every language, without the words that it defines and the names of chapters."""
+    return {found for found in EXPECTED.findall(text) if not found.startswith(("{index}", "{chapter}"))}
 
 
 def _english(message: Message) -> str:
     """The message, of one with a plural that."""
     return message.id if isinstance(message.id, str) else message.id[1]
-
-
-def _place(file: Path) -> str:
-    """A file as it is named from the top of the repository."""
-    inside = file.is_relative_to(PACKAGE)
-    return f"harness/{file.relative_to(PACKAGE)}" if inside else str(file.relative_to(PACKAGE.parent))
 
 
 def _in_maxima(file: IO[bytes], *others: Any, **options: Any) -> Found:

@@ -4,10 +4,10 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from ..crosscheck.report import OPINION, EquationVerdict, Verdict
+from ..crosscheck.report import OPINION, EquationVerdict
 from ..errata import PrintedEquation
 from ..language import translatable
-from ..record import Equation, Scene
+from ..record import Derivation, Equation, Scene
 from .runs import Derived
 
 
@@ -40,8 +40,8 @@ System = Derived | tuple[Derived, str]  # a derivation, or one with the name of 
 
 def cards_for(
     numbers: Sequence[str], systems: Sequence[System], printed: Sequence[PrintedEquation] = (), prefix: str = ""
-) -> list[Card]:
-    """Return the cards of equations of systems or of their scenes.
+) -> dict[str, Card]:
+    """Return the cards of equations of systems or of their scenes, by their anchors.
 
     A prefix begins the anchors, where a page shows the cards of several scenes.
 
@@ -59,14 +59,14 @@ def cards_for(
 
     Returns
     -------
-    list of Card
+    dict of str to Card
         Cards in the order of the first record.
     """
-    found = [_derivation_instances(each) if isinstance(each, Derived) else _scene_instances(*each) for each in systems]
-    equations = {each.equation.id: each.equation for each in found[0] if each.equation.number in numbers}
+    found = [_instances(each) for each in systems]
     first = systems[0] if isinstance(systems[0], Derived) else systems[0][0]
-    return [
-        Card(
+    equations = {each.equation.id: each.equation for each in found[0] if each.equation.number in numbers}
+    return {
+        place: Card(
             place,
             each.number,
             each.name,
@@ -76,42 +76,27 @@ def cards_for(
             tuple(one for group in found for one in group if one.equation.id == each.id),
         )
         for place, each in zip(anchors(equations.values(), prefix), equations.values(), strict=True)
-    ]
+    }
 
 
-def by_anchor(cards: Iterable[Card]) -> dict[str, Card]:
-    """Return cards by their anchors.
-
-    Parameters
-    ----------
-    cards : iterable of Card
-        Cards of a page.
-
-    Returns
-    -------
-    dict of str to Card
-        Cards by anchor.
-    """
-    return {card.anchor: card for card in cards}
-
-
-def printed_card(printed: Iterable[PrintedEquation], name: str) -> Card:
-    """Return the card of a printed equation without a number, by its name.
+def printed_cards(printed: Iterable[PrintedEquation]) -> dict[str, Card]:
+    """Return the cards of the printed equations without a number, by their names.
 
     Parameters
     ----------
     printed : iterable of PrintedEquation
         Equations of the paper.
-    name : str
-        Name of the equation.
 
     Returns
     -------
-    Card
-        Card of the equation.
+    dict of str to Card
+        Cards by name.
     """
-    found = next(each for each in printed if each.name == name)
-    return Card(*anchors([found]), found.number, found.name, "", True, (found,), ())
+    found = [each for each in printed if not each.number]
+    return {
+        each.name: Card(place, "", each.name, "", True, (each,), ())
+        for place, each in zip(anchors(found), found, strict=True)
+    }
 
 
 def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equation]:
@@ -129,10 +114,8 @@ def named_equations(derived: Derived, scene: str | None = None) -> dict[str, Equ
     dict of str to Equation
         Equations by id.
     """
-    record = derived.record
-    whole = max(record.derivations, key=lambda each: len(each.effects))
-    found = whole.equations if scene is None else scene_named(derived, scene).equations
-    return {equation.id: equation for equation in found}
+    whole = _most_effects_first(derived)[0][1] if scene is None else scene_named(derived, scene)
+    return {equation.id: equation for equation in whole.equations}
 
 
 def scene_named(derived: Derived, name: str) -> Scene:
@@ -153,8 +136,10 @@ def scene_named(derived: Derived, name: str) -> Scene:
     return next(scene for scene in derived.record.scenes if scene.name == name)
 
 
-def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tuple[EquationVerdict, ...]:
-    """Return the verdicts on an equation of a scene, or of the derivation.
+def verdicts_on(
+    derived: Derived, equation: Equation, scene: str | None, derivation: int = 0
+) -> tuple[EquationVerdict, ...]:
+    """Return the verdicts on an equation of a scene, or of a derivation.
 
     Parameters
     ----------
@@ -164,29 +149,17 @@ def verdicts_on(derived: Derived, equation: Equation, scene: str | None) -> tupl
         Equation of a record.
     scene : str or None
         Name of the scene, or None for the derivation.
+    derivation : int
+        Place of the derivation in the record.
 
     Returns
     -------
     tuple of EquationVerdict
         Verdicts on the equation.
     """
-    return tuple(found for found in derived.report.verdicts if found.scene == scene and found.id == equation.id)
-
-
-def missing(derived: Derived) -> list[EquationVerdict]:
-    """Return the verdicts on equations that are missing in a record.
-
-    Parameters
-    ----------
-    derived : Derived
-        Derivation with its check.
-
-    Returns
-    -------
-    list of EquationVerdict
-        Verdicts on missing equations.
-    """
-    return [found for found in derived.report.verdicts if not found.is_recorded and found.verdict is Verdict.DISAGREES]
+    names = {equation.id, OPINION.id if equation.id == "lagrange_equations" else equation.id}
+    found = (each for each in derived.report.verdicts if each.id in names)
+    return tuple(each for each in found if (each.scene, each.derivation) == (scene, derivation))
 
 
 def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -> list[str]:
@@ -212,30 +185,30 @@ def anchors(equations: Iterable[Equation | PrintedEquation], prefix: str = "") -
     return found
 
 
-def _derivation_instances(derived: Derived) -> list[Instance]:
-    """Return the equations of all derivations, those with most effects first."""
-    record, several = derived.record, len(derived.record.derivations) > 1
-    parts = sorted(enumerate(record.derivations), key=lambda part: len(part[1].effects), reverse=True)
-    title = translatable(record.system.title)
+def _instances(system: System) -> list[Instance]:
+    """Return the equations of a scene, or of all derivations of a system.
+
+    A scene that prescribes reactions is not in the record, and has none.
+    """
+    derived, name = (system, None) if isinstance(system, Derived) else system
+    if name is None:
+        parts = [(_title(derived, each), each.equations, place) for place, each in _most_effects_first(derived)]
+    else:
+        scenes = (each for each in derived.record.scenes if each.name == name)
+        parts = [(each.title, each.equations, each.derivation) for each in scenes]
     return [
-        Instance(
-            translatable("%(system)s, with %(effects)s", system=title, effects=", ".join(derivation.effects))
-            if several
-            else title,
-            equation,
-            tuple(
-                found
-                for found in derived.report.verdicts
-                if (found.scene, found.derivation) == (None, place)
-                and equation.id in (found.id, "lagrange_equations" if found.id == OPINION.id else "")
-            ),
-        )
-        for place, derivation in parts
-        for equation in derivation.equations
+        Instance(title, equation, verdicts_on(derived, equation, name, place))
+        for title, equations, place in parts
+        for equation in equations
     ]
 
 
-def _scene_instances(derived: Derived, name: str) -> list[Instance]:
-    """Return the equations of a scene, none if it prescribes reactions."""
-    scenes = [scene for scene in derived.record.scenes if scene.name == name]
-    return [Instance(each.title, one, verdicts_on(derived, one, name)) for each in scenes for one in each.equations]
+def _most_effects_first(derived: Derived) -> list[tuple[int, Derivation]]:
+    return sorted(enumerate(derived.record.derivations), key=lambda part: len(part[1].effects), reverse=True)
+
+
+def _title(derived: Derived, derivation: Derivation) -> str:
+    """Return the title of a system, with effects if there are several derivations."""
+    title, effects = translatable(derived.record.system.title), ", ".join(derivation.effects)
+    several = len(derived.record.derivations) > 1
+    return translatable("%(system)s, with %(effects)s", system=title, effects=effects) if several else title

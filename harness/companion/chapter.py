@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 
-import yaml
+from myst_parser.config.main import read_topmatter
 
 from . import EXAMPLES, runs
 from .further_runs import FURTHER_RUNS
@@ -18,7 +18,6 @@ from .runs import Run
 
 SOURCES = Path(__file__).parent
 FOLDERS = ("book", "manual")
-FENCE = "---\n"  # around the head of a page
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +60,7 @@ def head_of(text: str) -> dict[str, dict[str, str]]:
     dict
         Runs, values and figures, each by its name.
     """
-    begin, *rest = text.split(FENCE, 2)
-    return {} if begin else yaml.safe_load(rest[0])
+    return read_topmatter(text) or {}
 
 
 def _run(command: str, *words: str) -> Run:

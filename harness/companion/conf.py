@@ -31,6 +31,4 @@ html_math_renderer = "mathml"
 html_static_path = ["static"]
 html_css_files = ["holonom.css"]
 html_copy_source = html_show_sphinx = html_show_copyright = False
-templates_path = ["sidebar"]
-BARS = [f"sidebar/{part}.html" for part in ("brand", "search", "scroll-start", "navigation", "scroll-end")]
-html_sidebars = {"**": [*BARS[:-1], "language.html", BARS[-1]]}
+templates_path = ["theme"]  # the place of the theme for other versions of a page, here other languages

@@ -3,7 +3,7 @@
 ``{value}`EXPRESSION` `` is a value of the page's runs within a line, ``{show} EXPRESSION`` a block of it: a card of an
 equation, an answer, a table. An expression is Jinja's, over what the page's chapter computes and the macros of the
 templates. ``{show}`` without one takes a part of a template as its content. ``{run-figure} NAME`` is a figure of the
-chapter, of which the first paragraph is the text for who cannot see it and the rest the caption.
+chapter with its caption.
 ``{exercise} GRADE`` is a question, ``{answer}`` the answer to the question in the same place of their order.
 ``{chapter}`chapter {number} <NAME>` `` is a link to a chapter with its number; Sphinx's ``numref`` would read all pages
 for every build.
@@ -16,7 +16,7 @@ from typing import Any
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
 from docutils import nodes
-from markupsafe import Markup, escape
+from docutils.parsers.rst.directives.images import Figure
 from sphinx import addnodes
 from sphinx.application import Sphinx
 from sphinx.config import Config
@@ -26,19 +26,17 @@ from sphinx.util.docutils import SphinxDirective, SphinxRole
 from sphinx.util.nodes import make_refnode
 from sphinx.writers.html5 import HTML5Translator
 
-from ..language import ENGLISH, LANGUAGES, catalog_file, gettext, translatable
+from ..language import ENGLISH, catalog_file, gettext, translatable
 from ..typeset.mathml import inline_mathml, mathml
 from . import EXAMPLES
 from .chapter import chapters_of_the_paper
 from .finish import EQUATION, with_columns, with_equations
 from .runs import Run
 from .sessions import answers_of
-from .shelf import Shelf
+from .shelf import FIGURES, Shelf
 from .stored_results import Results, digest_of_all
 
-GRADES = 3
 BOOK = "book"
-FIGURE = "run-figure"  # class of nodes until a page is read, with its translations
 PROMPT = "holonom_prompt"  # the example and the statements of a page, among the data of the page that is read
 SHELF = "holonom_shelf"  # the chapters, among the data of the page that is read
 RESULTS = ".results"  # the folder of results that a later build takes
@@ -133,22 +131,22 @@ class When(SphinxDirective):
         return self.parse_content_to_nodes() if holds else []
 
 
-class RunFigure(SphinxDirective):
-    """A figure that the chapter draws."""
-
-    required_arguments, has_content = 1, True
+class RunFigure(Figure):
+    """A figure that the chapter draws, with its text alternative as the option alt."""
 
     def run(self) -> list[nodes.Node]:
-        """Return the figure.
+        """Return the figure, which is a link to its picture.
 
         Returns
         -------
         list of docutils.nodes.Node
             Nodes of the page.
         """
-        name, shelf = self.arguments[0], self.env.temp_data[SHELF]
-        file = shelf.figure(self.env.docname, name) if shelf else ""
-        return [nodes.container("", *self.parse_content_to_nodes(), classes=[FIGURE], name=name, file=file)]
+        env, (name,) = self.state.document.settings.env, self.arguments
+        shelf = env.temp_data[SHELF]
+        picture = shelf.figure(env.docname, name) if shelf else FIGURES
+        self.arguments, self.options["target"], self.options["name"] = [picture], picture, f"fig-{name}"
+        return super().run()
 
 
 class Exercise(SphinxDirective):
@@ -168,7 +166,7 @@ class Exercise(SphinxDirective):
         label = (gettext("easy"), gettext("middling"), gettext("hard"))[grade - 1]
         begin = (
             f'<div class="exercise" id="exercise-{number}"><a class="number" href="#answer-{number}">{number}</a> '
-            f'<span class="grade" role="img" aria-label="{label}">{"●" * grade + "○" * (GRADES - grade)}</span>'
+            f'<span class="grade" role="img" aria-label="{label}">{"●" * grade:○<3}</span>'
         )
         return [_html(begin), *self.parse_content_to_nodes(), _html("</div>")]
 
@@ -197,16 +195,6 @@ def _html(text: str) -> nodes.raw:
     return nodes.raw("", text, format="html")
 
 
-def _finish_figures(app: Sphinx, tree: nodes.document) -> None:
-    """Put the picture of each figure, with its alternative text, before the caption."""
-    figures = [each for each in tree.findall(nodes.container) if FIGURE in each["classes"]]
-    for found in figures if not _collecting(app) else ():
-        (words, *caption), file = found.children, found["file"]
-        text = escape(Markup(words.astext()).striptags())
-        begin = f'<figure id="fig-{found["name"]}"><a href="{file}"><img src="{file}" alt="{text}" /></a><figcaption>'
-        found.parent.replace(found, [_html(begin), *caption, _html("</figcaption></figure>")])
-
-
 def _collecting(app: Sphinx) -> bool:
     """Return True if messages are collected, without runs."""
     return app.builder.name == "gettext"
@@ -229,11 +217,6 @@ def _shelf_of(app: Sphinx) -> Shelf:
         files, results = Path(app.outdir) / FILES, Results(Path(app.doctreedir).parent / RESULTS)
         app.holonom_shelf = Shelf(chapters_of_the_paper(), _language_of(app), files, results)
     return app.holonom_shelf
-
-
-def _up(name: str) -> str:
-    """Return the way from a page to the root."""
-    return "../" * name.count("/")
 
 
 def _visit_math(translator: HTML5Translator, node: nodes.math) -> None:
@@ -277,11 +260,9 @@ def _chapter_with_number(
 
 
 def _finish_page(app: Sphinx, name: str, template: str, context: dict[str, Any], tree: nodes.document | None) -> None:
-    """Link the equations of a page, and add column names to its table cells."""
-    partners = context.get("folders", {}).items()
-    context["translations"] = [(each, LANGUAGES[each], f"{_up(name)}{folder}{name}.html") for each, folder in partners]
+    """Link equations and figures of a page, and name the columns of its tables."""
     if "body" in context and app.builder.name == "html":
-        body = context["body"].replace('="figures/', f'="{_up(name)}{FILES}/')
+        body = context["body"].replace(f'="{FIGURES}', f'="{context["pathto"](FILES, resource=True)}/')
         context["body"] = with_columns(with_equations(body, _places_from(app, name, body)))
 
 
@@ -342,5 +323,4 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("source-read", _put_shelf)
     app.connect("missing-reference", _chapter_with_number)
     app.connect("html-page-context", _finish_page)
-    app.connect("doctree-read", _finish_figures)
     return {"parallel_read_safe": False, "parallel_write_safe": True}

@@ -1,14 +1,16 @@
 """Final changes of pages: links to equations and column names of folded tables."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 
 from markupsafe import Markup, escape
 
-TAG = re.compile(r"(<[^>]+>)")
-TAG_NAME = re.compile(r"</?([\w:]+)")
-UNLINKED = {"a", "code", "pre", "math", "h1", "h2", "h3", "h4", "style", "script", "svg", "button", "nav", "label"}
-REFERENCE = re.compile(r"(?<![0-9A-Za-z])\((\d{1,2}|3a)\)")  # and no issue of a journal, 28(1)
+UNLINKED = "a|code|pre|math|h1|h2|h3|h4|style|script|svg|button|nav|label"
+NUMBER = re.compile(
+    rf"<({UNLINKED})\b.*?</\1>|<[^>]+>"  # elements without links, tags
+    r"|(?<![0-9A-Za-z])\((?P<number>\d{1,2}|3a)\)",  # and no issue of a journal, 28(1)
+    re.DOTALL,
+)
 EQUATION = re.compile(r'id="eq-(\d{1,2}|3a)"')
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 COLUMN = re.compile(r"<th [^>]*>(.*?)</th>", re.DOTALL)
@@ -32,23 +34,11 @@ def with_equations(page: str, places: Mapping[str, str]) -> str:
         HTML of the page.
     """
 
-    def linked(number: re.Match) -> str:
-        link = places.get(number[1])
-        return f'<a class="equation" href="{link}">{number[0]}</a>' if link else number[0]
+    def linked(found: re.Match) -> str:
+        link = places.get(found["number"])
+        return f'<a class="equation" href="{link}">{found[0]}</a>' if link else found[0]
 
-    return "".join(_outside(page, lambda text: REFERENCE.sub(linked, text)))
-
-
-def _outside(page: str, change: Callable[[str], str]) -> Iterator[str]:
-    """Yield the page with its text changed outside of protected elements."""
-    inside = 0
-    for piece in TAG.split(page):
-        if name := TAG_NAME.match(piece):
-            if name[1] in UNLINKED and not piece.endswith("/>"):
-                inside += -1 if piece.startswith("</") else 1
-            yield piece
-        else:
-            yield piece if inside else change(piece)
+    return NUMBER.sub(linked, page)
 
 
 def with_columns(page: str) -> str:

@@ -8,9 +8,6 @@ from pathlib import Path
 from ..benchmark.hard_cases.case import CaseReport, Extent, examined
 from ..benchmark.hard_cases.register import REGISTER
 from ..benchmark.work_precision.study import Plan, Study, study
-from ..documents import ask
-from ..failures import HolonomError
-from ..formats import Document
 from ..program.model import Model, scene_model
 from ..program.motion_problem import motion_problem
 from ..program.motion_program import Program
@@ -19,7 +16,6 @@ from ..sandbox import Limits
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
-from ..temporary import private_directory
 from . import EXAMPLES, INITIAL_SCENE, PAPER, PENDULUM, TILTED_PLANE, table
 from .convergence import find_radii
 from .motions import motion
@@ -133,35 +129,6 @@ def short_report(name: str) -> CaseReport:
     return examined(next(case for case in REGISTER if case.name == name), Extent.SHORT)
 
 
-def refusal(file: Path, given: str, changed: str) -> str:
-    """Return the error message for a scene file with one changed entry.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    given : str
-        Entry of the file.
-    changed : str
-        Entry in its place.
-
-    Returns
-    -------
-    str
-        Message.
-    """
-    text = file.read_text(encoding="utf-8").replace(given, changed)
-    load = next(line for line in text.splitlines() if line.startswith("load("))
-    with private_directory() as directory:
-        copy = directory / file.name
-        copy.write_text(text.replace(load, 'load("holonom.mac")$'), encoding="utf-8")
-        try:
-            ask(Document.RECORD, copy)
-        except HolonomError as error:
-            return error.detail
-    raise ValueError(f"{changed} is not refused")
-
-
 def _exhibit(file: str, scene: str | None = None, until: str | None = None, **shown: str) -> Run:
     return Run(motion, (EXAMPLES.parent / file, scene, until and Fraction(until)))
 
@@ -178,6 +145,5 @@ FURTHER_RUNS: Mapping[str, Mapping[str, Run]] = {
         "study": Run(short_study, (PAPER, INITIAL_SCENE)),
         "drift": Run(drifting, (PENDULUM, SWING)),
     },
-    "your-own-system": {"refusal": Run(refusal, (PENDULUM, "y = -cos(%pi/13)", "y = -1"))},
 }
 """Runs by the names of their results, by page."""

@@ -13,20 +13,12 @@ from ..record import Equation, Relation, System
 from ..typeset.equations import latex_equation
 from ..typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree
 from ..typeset.mathml import inline_mathml, mathml
+from . import table
 
 WIDTH, NARROW = 62, 30  # digits that fit in a card on a desk and on a phone
-NOTHING = {
-    "6": translatable("There are none: the mass matrix does not depend on the coordinates."),
-    "19": translatable(
-        "No formula: the constraints are not linear in what the scene leaves out, or it leaves nothing out."
-    ),
-}
 UNCONSTRAINED = translatable("There are no constraints, and so no multipliers: every motion is free.")
 LINE_BREAK = r"\\"
 FORMULA_IN_PROSE = re.compile(r"\$([^$]+)\$")
-
-
-Formulas = Callable[[int], Sequence[str]]  # LaTeX at a width in digits
 
 
 def tex(formula: str) -> Markup:
@@ -212,7 +204,7 @@ def nothing_to_show(equation: Equation) -> str:
     str
         Message.
     """
-    return translated(NOTHING.get(equation.number, UNCONSTRAINED))
+    return translated(table("words").get(equation.id, {}).get("nothing", UNCONSTRAINED))
 
 
 def as_printed(printed: PrintedEquation) -> Markup:
@@ -265,8 +257,11 @@ def difference(printed: PrintedEquation) -> Markup:
     return _block(lambda width: [latex_tree(printed.difference_tree, width)], printed.difference)
 
 
-def _block(formulas: Formulas, spoken: str) -> Markup:
-    """Return a formula on lines of its own, broken for a wide and for a narrow page."""
+def _block(formulas: Callable[[int], Sequence[str]], spoken: str) -> Markup:
+    """Return a formula on lines of its own, for a wide and for a narrow page.
+
+    It is given as LaTeX at a width in digits.
+    """
     wide, narrow = (Markup("".join(mathml(each, spoken) for each in formulas(width))) for width in (WIDTH, NARROW))
     both = Markup('<div class="wide">{}</div><div class="narrow">{}</div>').format(wide, narrow)
     return Markup('<div class="formula">{}</div>').format(wide if wide == narrow else both)

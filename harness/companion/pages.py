@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING
 import jinja2
 import numpy as np
 from markupsafe import Markup, escape
-from numpy.typing import NDArray
-from sympy import Expr
+from sympy import Expr, simplify  # noqa: F401
 
-from ..explanations import advice, engine_text, notes  # noqa: F401
+from ..explanations import advice, engine_text, notes  # noqa: F401, for the heads of pages, as simplify
 from ..failures import ErrorKind, HolonomError
 from ..figures import benchmark, curves, drawing, motion
 from ..figures.style import Picture
@@ -24,7 +23,7 @@ from ..number_texts import number
 from ..program.motion_program import Program
 from ..program.targets import javascript
 from ..record import Scene
-from . import EXAMPLES, TEMPLATES, cards, convergence, expressions, mathematics, motions, power, table, worked_example
+from . import EXAMPLES, TEMPLATES, cards, convergence, mathematics, motions, power, table, worked_example
 from .cards import Card
 
 if TYPE_CHECKING:
@@ -35,10 +34,9 @@ NAMED_BY_MAXIMA = re.compile(r"(no control law makes every motion free: .* is )(
 NOT_OF_A_WORD = re.compile(r"[^\w ]")
 CODE_IN_TEXT = re.compile(r"`([^`]+)`")
 NEGLIGIBLE = 1e-9  # of a complex number: a part of it that is rounding alone
-MODULES = (benchmark, curves, drawing, motion, cards, convergence, expressions, mathematics, motions, power)
-MODULES += (worked_example,)
-NAMED = {"Panel": curves.Panel, "TIMES": benchmark.TIMES, "linspace": np.linspace, "array": np.array}
-NAMED |= {"exhibits": table("gallery")["exhibit"]}
+MODULES = (benchmark, curves, drawing, motion, cards, convergence, mathematics, motions, power, worked_example)
+NAMED = {"Panel": curves.Panel, "TIMES": benchmark.TIMES, "exhibits": table("gallery")["exhibit"]}
+NAMED |= {"linspace": np.linspace, "array": np.array, "sin": np.sin}
 MACROS = ("tables.html", "cards.html", "answers.html", "motions.html")
 WHITESPACE = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
 
@@ -117,25 +115,12 @@ def _sentence(text: str) -> str:
     return text if text[1:2].isdigit() else text[:1].upper() + text[1:]  # q1 is a symbol
 
 
-def _continued(text: str) -> str:
-    return text[:1].lower() + text[1:]
-
-
 def _listed(items: Iterable[Markup]) -> Markup:
     return Markup(gettext(", ")).join(items)
 
 
-def _both(items: Iterable[Markup]) -> Markup:
-    """Return texts joined by commas and the word for "and"."""
-    return Markup(gettext(" and ")).join(items)
-
-
-def _each_equality(values: Mapping[str, Expr]) -> list[Markup]:
-    return [mathematics.equality(name, value) for name, value in values.items()]
-
-
 def _equalities(values: Mapping[str, Expr]) -> Markup:
-    return _listed(_each_equality(values))
+    return _listed(mathematics.equality(name, value) for name, value in values.items())
 
 
 def _numbers_of(scene: Scene) -> dict[str, Expr]:
@@ -154,13 +139,9 @@ def _law_text(law: UniversalLaw) -> Markup:
         message = Markup(gettext("%(law)s, %(control)s any function of the time"))
         text = message % {"law": text, "control": mathematics.symbol(name)}
     if law.positive:
-        conditions = _both(mathematics.expression(each) + " " + mathematics.tex("> 0") for each in law.positive)
+        conditions = _listed(mathematics.expression(each) + " " + mathematics.tex("> 0") for each in law.positive)
         text = Markup(gettext("%(law)s, where %(conditions)s")) % {"law": text, "conditions": conditions}
     return text
-
-
-def _columns(rows: Sequence[Sequence[float]]) -> NDArray[np.float64]:
-    return np.array(rows, dtype=float).T
 
 
 def _rounded(value: float, digits: int = 6) -> str:
@@ -174,16 +155,12 @@ def _counted(message: str, count: int, none: str) -> str:
 
 def _complex_numbers(values: Sequence[complex]) -> Markup:
     """Complex numbers, of each conjugate pair both at once."""
-    upper = [value for value in values if value.imag >= 0 or value.conjugate() not in values]
-    return _listed(mathematics.tex(_complex_number(value, value.conjugate() in values)) for value in upper)
+    return _listed(mathematics.tex(_pair(value)) for value in values if value.imag >= 0)
 
 
-def _complex_number(value: complex, paired: bool) -> str:
+def _pair(value: complex) -> str:
     real = "" if abs(value.real) < NEGLIGIBLE * abs(value) else f"{value.real:.6g}"
-    if not value.imag:
-        return real
-    sign = r"\pm" if paired else "+" if value.imag > 0 else "-"
-    return rf"{real} {sign} {abs(value.imag):.6g}\,i"
+    return rf"{real} \pm {value.imag:.6g}\,i" if value.imag else real
 
 
 def _coefficient(text: str) -> str:

@@ -143,16 +143,12 @@ def _printed(page: Path) -> Path:
     root = ["--no-sandbox"] if os.geteuid() == 0 else []  # Chromium's sandbox cannot be set up by root
     command = [browser(), *PRINT.split(), OFFLINE, *root, *files]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE)
+        told = subprocess.run(command, capture_output=True, text=True, timeout=PATIENCE).stderr.strip()
+        reason = told.rpartition("\n")[2] or translatable("it wrote nothing")
     except subprocess.TimeoutExpired:
-        raise HolonomError(
-            ErrorKind.NOT_PRINTED, detail=translatable("it took longer than %(limit)s s", limit=PATIENCE)
-        ) from None
+        reason = translatable("it took longer than %(limit)s s", limit=PATIENCE)
     if not printed.is_file():
-        raise HolonomError(
-            ErrorKind.NOT_PRINTED,
-            detail=next(reversed(done.stderr.strip().splitlines()), translatable("it wrote nothing")),
-        )
+        raise HolonomError(ErrorKind.NOT_PRINTED, detail=reason)
     return printed
 
 

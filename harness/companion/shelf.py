@@ -9,7 +9,7 @@ from .chapter import Chapter
 from .pages import environment
 from .stored_results import Results
 
-FOLDER = "figures"  # of all files that pages save, in their texts
+FIGURES = "figures://"  # before the names of files that pages save; Sphinx leaves it as it is
 
 
 class Shelf:
@@ -111,7 +111,7 @@ class Shelf:
         """
         self.files.mkdir(parents=True, exist_ok=True)
         write_whole(self.files / name, text)
-        return f"{FOLDER}/{name}"
+        return FIGURES + name
 
     def rendered(self, name: str, template: str) -> str:
         """Return a part of a page, rendered with the results of its chapter.

@@ -12,7 +12,7 @@ from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 from ..failures import ErrorKind, HolonomError
 from ..files import write_whole_directory
-from ..language import gettext, speaking
+from ..language import LANGUAGES, gettext, speaking
 from .chapter import SOURCES, Chapter
 from .directives import FILES, RESULTS
 from .own_scenes import texts_of_scenes
@@ -67,18 +67,19 @@ def make_site(
         if scenes:
             shelf.perform(chapters)  # if one has an error, nothing is written
         with speaking(language):
-            folders = {each: _from(language, each, languages[0]) for each in languages if each != language}
             sources = _texts_about(scenes, folder) if scenes else SOURCES
             title = gettext("A companion to systems of your own")
             own = {"bibtex_bibfiles": [], "gettext_compact": "own", "html_title": title} if scenes else {}
-            app = build(sources, folder, shelf, {"html_context": {"folders": folders}} | own)
+            app = build(sources, folder, shelf, {"html_context": {"partners": _partners(language, languages)}} | own)
             if pdf is not None:
                 print_site(app, root, pdf if first else pdf.with_suffix(f".{language}{pdf.suffix}"))
 
 
-def _from(language: str, other: str, first: str) -> str:
-    """Return the way from the pages of a language to those of another one."""
-    return ("" if language == first else "../") + ("" if other == first else f"{other}/")
+def _partners(language: str, languages: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return code, name and relative folder of each other language."""
+    up = "" if language == languages[0] else "../"
+    others = (each for each in languages if each != language)
+    return [(each, LANGUAGES[each], up if each == languages[0] else f"{up}{each}/") for each in others]
 
 
 def build(sources: Path, directory: Path, shelf: Shelf, settings: Mapping[str, Any]) -> Sphinx:
@@ -131,7 +132,5 @@ def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
 
 def _require_site_or_nothing(directory: Path) -> None:
     """Raise if a directory contains files that Sphinx did not write."""
-    if not directory.exists() or (directory.is_dir() and not any(directory.iterdir())):
-        return
-    if not (directory / MARK).is_dir():
+    if directory.is_file() or (any(directory.glob("*")) and not (directory / MARK).is_dir()):
         raise HolonomError(ErrorKind.NOT_A_COMPANION, directory)

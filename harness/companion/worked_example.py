@@ -1,6 +1,6 @@
 """The worked example of section 4: each equation as printed, and as derived."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..errata import PrintedEquation
@@ -12,21 +12,10 @@ from . import FREE_SCENE, INITIAL_SCENE
 from .cards import Card, Instance, anchors, named_equations, verdicts_on
 from .runs import Derived
 
-OF_COORDINATES = {
-    "equation of motion of": ("driven_accelerations", None),
-    "acceleration of": ("accelerations", None),
-    "initial acceleration of": ("initial_accelerations", INITIAL_SCENE),
-    "initial motion of": ("initial_series", INITIAL_SCENE),
-}
-COUNTERPARTS = {
-    "constraint": ("constraints", None, 0),
-    "condition of free motion of the example": ("free_motion_condition", None, 0),
-    "multiplier": ("multipliers", None, 0),
-    "initial value q3_0": ("determined_initial_values", INITIAL_SCENE, 0),
-    "initial value dot(q3_0)": ("determined_initial_values", INITIAL_SCENE, 1),
-    **{f"{name} q{k + 1}": (*equation, k) for name, equation in OF_COORDINATES.items() for k in range(3)},
-}
-"""The equation of the record that belongs to a printed one, its scene (None: the derivation), and which relation."""
+DATA = {"kinetic energy", "generalized forces", "initial state of the example", "control law of the initial motion"}
+BEFORE_THE_LAW = ("constraints", "free_motion_condition")
+AFTER_THE_LAW = ("driven_accelerations", "multipliers", "accelerations")
+OF_THE_SCENE = ("initial_accelerations", "initial_series", "determined_initial_values")
 
 
 def worked_cards(example: Sequence[PrintedEquation], paper: Derived, laws: Sequence[UniversalLaw]) -> list[Card]:
@@ -46,23 +35,27 @@ def worked_cards(example: Sequence[PrintedEquation], paper: Derived, laws: Seque
     list of Card
         Cards in the order of the paper.
     """
+    derived = _in_order_of_the_paper(paper, laws)
     return [
-        Card(place, each.number, each.name, "", True, (each,), _derived(each, paper, laws))
+        Card(place, each.number, each.name, "", True, (each,), () if each.name in DATA else (next(derived),))
         for each, place in zip(example, anchors(example), strict=True)
     ]
 
 
-def _derived(each: PrintedEquation, paper: Derived, laws: Sequence[UniversalLaw]) -> tuple[Instance, ...]:
-    """Return the derived counterpart of a printed equation, none if it is given."""
-    if each.number == "15":
-        return (_law(laws, paper),)
-    if each.name not in COUNTERPARTS:
-        return ()
-    name, scene, place = COUNTERPARTS[each.name]
-    equation = named_equations(paper, scene)[name]
-    one = replace(equation, relations=(equation.relations[place],))
-    title = f"({equation.number}) {translated(equation.name)}"
-    return (Instance(title, one, verdicts_on(paper, equation, scene)),)
+def _in_order_of_the_paper(paper: Derived, laws: Sequence[UniversalLaw]) -> Iterator[Instance]:
+    """Yield the derived relations of the example, those of the second task last."""
+    yield from _relations(paper, None, BEFORE_THE_LAW)
+    yield _law(laws, paper)
+    yield from _relations(paper, None, AFTER_THE_LAW)
+    yield from _relations(paper, INITIAL_SCENE, OF_THE_SCENE)
+
+
+def _relations(paper: Derived, scene: str | None, names: Sequence[str]) -> Iterator[Instance]:
+    """Yield the relations of equations one by one, with the verdicts on the equations."""
+    for equation in map(named_equations(paper, scene).get, names):
+        title = f"({equation.number}) {translated(equation.name)}"
+        for relation in equation.relations:
+            yield Instance(title, replace(equation, relations=(relation,)), verdicts_on(paper, equation, scene))
 
 
 def _law(laws: Sequence[UniversalLaw], paper: Derived) -> Instance:

@@ -197,3 +197,8 @@ def test_best_step_of_chapter_12():
     steps = np.linspace(1e-4, 1e-3, 100_001)
     errors = steps**4 + 1e-16 / steps
     assert [steps[errors.argmin()], errors.min()] == pytest.approx([4.8e-4, 2.6e-13], rel=0.01)
+
+
+def test_angular_acceleration_of_chapter_4_at_the_start():
+    series = holonom.load("examples/whirling_bob.mac", scene="drawn_in_scene").series(order=2)
+    assert 2 * float(sympify(series.coordinates["phi"][2])) == pytest.approx(1 / 5, abs=1e-14)

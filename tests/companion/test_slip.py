@@ -6,7 +6,7 @@ import pytest
 from pages import REPOSITORY
 
 from holonom import maxima
-from holonom.companion.cards import by_anchor, cards_for
+from holonom.companion.cards import cards_for
 from holonom.companion.chapter import chapters_of_the_paper
 
 RIGHT = '"2 d^2f/dq_s du_r dot(q_s) dot(u_r)" = 2*mixed_form(f,'
@@ -34,7 +34,7 @@ def cards(results, tmp_path_factory):
             file, *others = run.arguments
             found[name] = run.compute(root / file.relative_to(REPOSITORY), *others)
     numbers = ("2", "3a", "3", "4", "5", "6", "7", "8", "9")
-    return by_anchor(cards_for(numbers, [found["bob_file"], found["paper"]], found["printed"]))
+    return cards_for(numbers, [found["bob_file"], found["paper"]], found["printed"])
 
 
 def verdicts(card):

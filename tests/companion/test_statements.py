@@ -48,6 +48,22 @@ def slope_of_the_first_multiplier(found) -> bool:
     return multiplier.diff(u).subs(u, Rational(3, 10)) == Rational(found["slope"])
 
 
+def step_five(found) -> bool:
+    """The multiplier and the acceleration of S = q1 + q2 as the page has them."""
+    q, v = (sum(Symbol(name.format(k), real=True) for k in (1, 2)) for name in ("q{}", "dot(q{})"))
+    u, rate, acceleration, reaction = (Symbol(name, real=True) for name in ("u", "dot(u)", "ddot(u)", "lambda1"))
+    multiplier = found["steps"]["multipliers"].relations[0].right
+    first, second, _ = (each.right for each in found["steps"]["driven_accelerations"].relations)
+    written = ((acceleration - u) * q + 2 * (rate - u) * v) / (1 + 2 * u**2)
+    return simplify(multiplier - written) == 0 and simplify(first + second + q + 2 * v + 2 * u * reaction) == 0
+
+
+def misprint(found) -> bool:
+    """The difference of the multipliers under u0 + t is 2 dot(S)/(1 + 2 u^2)."""
+    lacking = 2 * found["rate"] / (1 + 2 * found["u"] ** 2)
+    return np.abs(found["pushed"].multipliers["lambda1"] - found["printed_along"] - lacking).max() < 1e-9
+
+
 STATEMENTS = [
     Statement("initial-motion", "is the same number", slope_of_the_first_multiplier),
     Statement(
@@ -69,7 +85,7 @@ STATEMENTS = [
         lambda found: found["free_law"].motion.verdict is FreeMotionVerdict.FREE
         and multipliers(found["free_motion"]).max() < 1e-9,
     ),
-    Statement("free-motion", "The three curves balance to", lambda found: found["balance"].error < 1e-8),
+    Statement("free-motion", "The three curves balance to", lambda found: found["error"].max() < 1e-8),
     Statement("free-motion", "of work on the control", lambda found: found["spent"] < 0),
     Statement(
         "initial-motion",
@@ -80,7 +96,7 @@ STATEMENTS = [
     Statement(
         "equations-of-motion",
         "the equations become",
-        lambda found: not {"q1", "q2"} & {str(each) for each in found["multiplier_in_sum"].free_symbols},
+        step_five,
     ),
     Statement(
         "free-motion",
@@ -90,7 +106,13 @@ STATEMENTS = [
     Statement(
         "worked-example",
         "A numerical integration that does not use this formula begins with",
-        lambda found: abs(found["multiplier_at_start"] - found["multiplier_followed"]) < 1e-9,
+        lambda found: abs(-100 / 177 - found["multiplier_followed"]) < 1e-9,
+    ),
+    Statement("worked-example", "which vanishes only where", misprint),
+    Statement(
+        "radius-of-convergence",
+        "The estimate from",
+        lambda found: abs(found["series"].radius.estimate - 0.76811457) < 1e-6,
     ),
     Statement(
         "universal-controls",
@@ -124,7 +146,7 @@ STATEMENTS = [
     ),
     Statement(
         "turn-the-knob",
-        "the plane lies flat, and the reaction is zero with any forces",
+        "the plane lies flat, and the reaction is zero for all",
         lambda found: [dict(law.controls) for law in found["other"].universal.laws] == [{"u": 0}]
         and found["other"].universal.verdict == "all",
     ),
