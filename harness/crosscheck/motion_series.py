@@ -368,30 +368,46 @@ def _values_of_servo(
 ) -> Iterator[ComparedValue]:
     """Check that the outputs stay zero along the program's motion.
 
-    That motion is also the one of the power series.
+    That motion is also the one of the power series, with its multipliers.
     """
     taylor = Taylor(ORDER)
     curve, computed = _expanded(problem)
-    for q, row in series.coordinates.items() if series else ():
-        for k, x in enumerate(numbers(row)):
-            yield ComparedValue(f"power {k} of {q}", x, _coefficient(curve[q], k), mp.fsum(map(abs, curve[q])))
     found = {name: computed[name] for name in motion.system.controls if name in computed}
+    if series:
+        reactions = dict.fromkeys(series.multipliers, (mp.zero,)) | {name: computed[name] for name in problem.reactions}
+        yield from _values_of_rows(series.coordinates, curve, mp.zero)
+        forces = (mp.fsum(map(abs, row)) for row in (*reactions.values(), *found.values()))
+        yield from _values_of_rows(series.multipliers, reactions, max(forces, default=mp.zero))
     law = motion.law.at(Taylor(ORDER + 1), curve["t"][0], motion.parameters())
     multipliers = [computed[name] for name in motion.system.multipliers]
-    yield from values_of_equations(motion, taylor, motion.parameters() | found | law | curve, multipliers)
+    curve = motion.parameters() | found | law | curve
+    yield from _values_of_forces(motion, taylor, curve, multipliers, series.constraint_forces if series else {})
+    yield from values_of_equations(motion, taylor, curve, multipliers)
+
+
+def _values_of_rows(rows: Mapping[str, Sequence[str]], true: Values, largest: mp.mpf) -> Iterator[ComparedValue]:
+    """Yield the coefficients of a series with the true ones.
+
+    Rounding disturbs each by a share of the largest of the quantities that it is found with.
+    """
+    for name, row in rows.items():
+        size = max(mp.fsum(map(abs, true[name])), largest * mp.mpf(10) ** -LOST)
+        for k, x in enumerate(numbers(row)):
+            yield ComparedValue(f"power {k} of {name}", x, _coefficient(true[name], k), size)
 
 
 def _expanded(problem: MotionProblem) -> tuple[Values, Values]:
     """Return power series of the coordinates and of the program's results.
 
-    They follow from its accelerations, from the initial state on.
+    They follow from its accelerations, from the initial state on. Those of the results end at the same order as the
+    multipliers of a series, so that the coordinates have two more powers.
     """
     start = {name: mp.mpf(text) for name, text in problem.start.items()}
     known = {q: (start[q], start[f"dot({q})"]) for q in problem.coordinates}
     fixed = dict.fromkeys(problem.multipliers, (mp.zero,)) | symbols_of_tables(problem, start["t"])
     fixed = with_signs(problem, fixed | {name: (x,) for name, x in start.items()})
     computed: Values = {}
-    for order in range(ORDER - 1):
+    for order in range(ORDER + 1):
         taylor = Taylor(order)
         state = {"t": (start["t"], mp.one)} | known | {f"dot({q})": taylor.rate(x) for q, x in known.items()}
         computed = run_along(problem.motion, fixed | {name: x[: order + 1] for name, x in state.items()}, taylor)

@@ -60,6 +60,21 @@ def test_wrong_controls_of_servo_constraints_are_found(name):
         assert [each.found.verdict for each in verify_servo(description, [wrong], series)] == [Verdict.DISAGREES]
 
 
+@pytest.mark.parametrize("name", ["arm", "level_load", pytest.param("stewart_platform", marks=pytest.mark.long)])
+def test_wrong_series_under_servo_constraints_are_found(name):
+    """Coordinates, multipliers and constraint forces, each coefficient changed in a draw."""
+    source = Source(EXAMPLES / f"{name}.mac")
+    motions, description = read_motions(source.description(), ask_for_check(source, {})), source.description()
+    served = {scene.name for scene in description.scenes if scene.servo_trees}
+    (*_, found) = (each for each in motions.series if each.scene in served)
+    programs = [each for each in motions.programs if each.scene == found.scene]
+    assert [each.found.verdict for each in verify_servo(description, programs, [found])] == [Verdict.AGREES]
+    draw = random.Random(name)
+    for _ in range(EACH):
+        wrong = changed(found, draw)
+        assert [each.found.verdict for each in verify_servo(description, programs, [wrong])] == [Verdict.DISAGREES]
+
+
 def with_control_changed(programs: ScenePrograms, control: str) -> ScenePrograms:
     problem = programs.problems[Solve.DIRECT]
     assignments = tuple(
