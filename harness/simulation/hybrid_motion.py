@@ -23,7 +23,7 @@ from enum import StrEnum
 from fractions import Fraction
 from heapq import merge
 from itertools import groupby, islice
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -55,9 +55,6 @@ from .request import SimulationRequest
 from .residuals import residuals
 from .time_events import time_events
 from .zeros import ZERO, Crossing
-
-if TYPE_CHECKING:
-    from .sensitivities import Sensitivities
 
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
 CROWD, CROWDED = 64, 1e-7  # switchings in a part of the time span: more have no end
@@ -100,8 +97,6 @@ class HybridMotion:
     ----------
     end : number
         The last time.
-    sensitivities : Sensitivities or None
-        The derivatives of the motion, if they are asked for.
 
     Raises
     ------
@@ -109,16 +104,9 @@ class HybridMotion:
         As `FallbackEngine`, or the motion starts where the equations leave open how it continues.
     """
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        request: SimulationRequest,
-        precision: Precision,
-        end: Any,
-        sensitivities: "Sensitivities | None" = None,
-    ) -> None:
+    def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
         self._span = float(end) - float(problem.start["t"])
-        self._request, self._precision, self._end, self._sensitivities = request, precision, end, sensitivities
+        self._request, self._precision, self._end = request, precision, end
         self._modes: dict[tuple[Any, ...], Mode] = {}
         self._sides: dict[str, int] = {}  # signs of the conditions of releases, since they left zero
         self._zero = self._impulse = precision.number("0")
@@ -541,14 +529,7 @@ class HybridMotion:
         key = (problem.multipliers, *pattern.values())
         if key not in self._modes:
             self._modes[key] = Mode(
-                problem,
-                pattern,
-                self._time_events,
-                self._request,
-                self._precision,
-                self._end,
-                self._known,
-                self._sensitivities,
+                problem, pattern, self._time_events, self._request, self._precision, self._end, self._known
             )
         return self._modes[key]
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Hashable, Iterator, Mapping
 from dataclasses import replace
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -38,9 +38,6 @@ from .request import FINAL_STATE_ALONE, SimulationRequest
 from .time_dependence import time_dependence
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
-
-if TYPE_CHECKING:
-    from .sensitivities import Sensitivities
 
 UNIQUE = "unique"  # name of the switching surfaces on which accelerations cease to be unique
 NO_ROUNDING: Mapping[str, float] = {}
@@ -124,8 +121,6 @@ class Mode:
         As for `HybridMotion`.
     known : dict
         The analytic motions of other modes, as `sharing_programs` keeps them.
-    sensitivities : Sensitivities or None
-        The derivatives of the motion, if they are asked for.
     """
 
     def __init__(
@@ -137,7 +132,6 @@ class Mode:
         precision: Precision,
         end: Any,
         known: dict[Hashable, MotionProblem],
-        sensitivities: "Sensitivities | None" = None,
     ) -> None:
         self.whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
         analytic = problem_in(problem, pattern)
@@ -149,8 +143,7 @@ class Mode:
         self.balance = EnergyBalance(self.problem, self._multipliers, precision)
         dense = bool(request.samples != FINAL_STATE_ALONE or self.balance.inner_states)
         dense = None if problem.signs or problem.tables else dense
-        moves = sensitivities and partial(sensitivities.at, self)
-        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices, moves), dense)
+        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
         self._vanishing = vanishing_times(self.problem, self.matrices, self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)

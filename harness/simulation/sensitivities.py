@@ -39,7 +39,7 @@ from .mode import Mode
 from .nominal import nominal_of
 from .recording import SampleBlock
 from .variation import TIME, Variation, size_of
-from .variational_equations import VariationalEquations
+from .variational_equations import VariationalEquations, units_of
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
@@ -88,29 +88,41 @@ class _ModeVariation:
             equations, [0.0] * len(equations), **self._tolerance, **self._code.options
         )
 
-    def integrate(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> _Segment:
-        """Integrate the derivatives through a part of the motion.
+    def integrate(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> list[_Segment]:
+        """Integrate the derivatives through a part, or its halves if they grow much.
 
         `left` is the remaining time of the motion at the start of the part.
         """
-        integrator, count = self._integrator, len(state)
+        integrator, units, half = self._integrator, units_of(state, moves), (start + end) / 2
         integrator.time = start
-        integrator.state[:] = np.concatenate([state, moves.ravel()])
-        integrator.pars[:] = self.variation.values(start, np.ones(moves.shape[1]))[: len(integrator.pars)]
+        integrator.state[:] = np.concatenate([state, (moves / units).ravel()])
+        integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]
         *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
         if integrator.time != end or not np.isfinite(integrator.state).all():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
                 detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
             )
-        piece = _Segment(start, end, self, lambda t: np.reshape(between(t).T[count:], (*moves.shape, len(t))))
+        self._units, count = units, len(state)
+        if steps > 1 and start < half < end and self._have_outgrown(state):
+            first = self.integrate(start, state, moves, half, left)
+            return first + self.integrate(half, *self.reached(moves.shape), end, left)
+
+        def derivatives(times: Numbers) -> Numbers:
+            return units[:, None] * np.reshape(between(times).T[count:], (*moves.shape, len(times)))
+
         self._compile_if_worthwhile(steps * left / (end - start))
-        return piece
+        return [_Segment(start, end, self, derivatives)]
+
+    def _have_outgrown(self, before: Numbers) -> bool:
+        """Return True if derivatives, not the state, decide about steps."""
+        state, moves = np.split(np.abs(self._integrator.state), [len(before)])
+        return bool(np.max(moves) > max(1.0, np.max(state), np.max(np.abs(before))))
 
     def reached(self, shape: tuple[int, int]) -> tuple[Numbers, Numbers]:
         """Return the state and the derivatives at the end of the last part, projected."""
         state, moves = np.split(self._integrator.state.copy(), [len(self.problem.state)])
-        return state, self.variation.corrected(self._integrator.time, state, moves.reshape(shape))
+        return state, self.variation.corrected(self._integrator.time, state, self._units * moves.reshape(shape))
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the time derivative of the state, shape (2n,)."""
@@ -176,14 +188,14 @@ class _ModeVariation:
 class Sensitivities:
     """The derivatives of one motion, integrated with it.
 
-    The Taylor engine integrates them in its own steps. With steps of other engines they are integrated after them.
-
     Parameters
     ----------
     problem : MotionProblem
         With its parameters open.
     directions : sequence of str
         Parameters. Coordinates and velocities, for their initial values.
+    begun : Mode
+        In which the motion begins.
     tol : float or None
         Tolerance of a step, or None for the precision of the numbers.
     end : float
@@ -192,10 +204,12 @@ class Sensitivities:
     Raises
     ------
     HolonomError
-        A direction is neither, or forces contain multipliers.
+        A direction is neither, the initial state cannot be adapted to it, or no motion program solves the equations.
     """
 
-    def __init__(self, problem: MotionProblem, directions: Sequence[str], tol: float | None, end: float) -> None:
+    def __init__(
+        self, problem: MotionProblem, directions: Sequence[str], begun: Mode, tol: float | None, end: float
+    ) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
             raise HolonomError(
@@ -210,73 +224,33 @@ class Sensitivities:
             raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=translatable("forces contain multipliers"))
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
-        self._here: _ModeVariation | None = None
-        self._steps, self._together, self._last = 0, None, None
+        self._nominal = nominal_of(begun.problem)
+        self._here = self._of(begun)
+        self._time, self._state = float(problem.start["t"]), None
+        self._moves = initial_tangents(problem, begun.problem, self.directions)
+        self._steps, self._reached, self._last = 0, self._time, None
         self._pieces: list[_Segment] = []
 
-    def at(self, mode: Mode, t: Any, state: Numbers) -> Numbers:
-        """Return the derivatives of the state where an engine begins.
-
-        Parameters
-        ----------
-        mode : Mode
-            The mode from here on.
-        t : number
-            End of the steps that were taken, or the initial time.
-        state : ndarray, shape (2n,)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        ndarray, shape (2n, p)
-
-        Raises
-        ------
-        HolonomError
-            The initial state cannot be adapted to a direction, or the derivatives are not unique or finite here.
-        """
-        if self._here is None:
-            self._here, self._nominal = self._of(mode), nominal_of(mode.problem)
-            self._time = self._reached = float(t)
-            self._state, self._moves = state, initial_tangents(mode.whole, mode.problem, self.directions)
-            return self._moves
-        self._advance()
-        if mode is not self._here.mode:
-            self._switch(mode, state)
-        return self._moves
-
     def take(self, step: Step) -> None:
-        """Take a step of the motion, with its derivatives if it has them.
-
-        Otherwise they are integrated block by block.
+        """Take a step of the motion. Integrate the derivatives block by block.
 
         Parameters
         ----------
         step : Step
             A step with its mode, which begins at the end of the last one.
         """
-        start = np.array([step.start])
-        if self._here is None or step.mode is not self._here.mode:
-            self.at(step.mode, step.start, step.states(start)[:, 0])
-        if step.moves is not None:
-            self._take_together(step)
-            return
-        if self._together is not None or self._steps >= BLOCK or self._at_knot(step):
+        if step.mode is not self._here.mode:
+            self._advance()
+            self._switch(step)
+        elif self._steps >= BLOCK or self._at_knot(step):
             self._advance()
         if not self._steps:
-            state = step.states(start)[:, 0]
+            state = step.states(np.array([step.start]))[:, 0]
             self._require_same_motion(state)
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
         if self._problem.signs or self._problem.released:
             self._last = step.states(np.array([step.end]))[:, 0]
-
-    def _take_together(self, step: Step) -> None:
-        """Take a step that has its derivatives. Those of a block are one piece."""
-        start, end, self._together = float(step.start), float(step.end), step
-        if self._pieces and self._pieces[-1].moves is step.moves:
-            start = self._pieces.pop().start
-        self._pieces.append(_Segment(start, end, self._here, step.moves))
 
     def samples(self, block: SampleBlock) -> dict[str, Numbers]:
         """Return the derivatives at samples by name, such as ``d(x, m)``.
@@ -345,15 +319,11 @@ class Sensitivities:
         return self._modes[mode]
 
     def _advance(self) -> None:
-        """Bring the derivatives to the time of the motion."""
-        if self._together is not None:
-            step, self._together, end = self._together, None, np.array([self._together.end])
-            self._time, self._state, self._moves = float(step.end), step.states(end)[:, 0], step.moves(end)[..., 0]
-            self._last = self._state
+        """Integrate the derivatives to the time of the motion and project them."""
         if not self._steps:
             return
-        self._pieces.append(
-            self._here.integrate(self._time, self._state, self._moves, self._reached, self._end - self._reached)
+        self._pieces += self._here.integrate(
+            self._time, self._state, self._moves, self._reached, self._end - self._reached
         )
         self._time, self._steps = self._reached, 0
         self._state, self._moves = self._here.reached(self._moves.shape)
@@ -375,9 +345,10 @@ class Sensitivities:
 
     # ---- switching ----
 
-    def _switch(self, mode: Mode, state: Numbers) -> None:
-        """Jump with the time of a switching, to the state behind it."""
-        before, after, t, old = self._here, self._of(mode), self._time, self._last
+    def _switch(self, step: Step) -> None:
+        """Jump with the time of a switching."""
+        before, after = self._here, self._of(step.mode)
+        t, old, state = self._time, self._last, step.states(np.array([step.start]))[:, 0]
         self._require_same_motion(old)
         surface = self._surface(before.mode, after.mode)
         if surface is not None:

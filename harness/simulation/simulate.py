@@ -233,15 +233,18 @@ class _Simulation:
         self.precision, self.end, self.ending = read_precision(str(request.precision)), end, ending
         self.start = self.precision.number(problem.start["t"])
         begun = time.perf_counter()
-        directions = request.sensitivities
-        self.sensitivities = Sensitivities(problem, directions, request.tol, float(end)) if directions else None
-        self.motion = HybridMotion(problem, request, self.precision, self.end, self.sensitivities)
+        self.motion = HybridMotion(problem, request, self.precision, self.end)
         self.first, self.begun = self.motion.state.copy(), self.motion.mode
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
         self.recording = Recording(self.begun, self._wanted_times(), zero, self._process)
         self.energy_statistics = EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
+        self.sensitivities = (
+            Sensitivities(self.motion.problem, request.sensitivities, self.begun, request.tol, float(self.end))
+            if request.sensitivities
+            else None
+        )
         self.steps = (
             DefectControl(self.end - self.start, self.precision)
             if may_hide(problem.matrices, ("t", *problem.parameters))

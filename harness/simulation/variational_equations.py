@@ -25,7 +25,7 @@ from .inputs import Inputs, heyoka_inputs
 from .matrices import MotionMatrices
 from .variation import size_of
 
-GROWTH = 8  # digits of derivatives are lost in proportion to it, and blocks of steps shortened by its logarithm
+GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
 
 class VariationalEquations:

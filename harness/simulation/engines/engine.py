@@ -61,9 +61,6 @@ class Step(NamedTuple):
     # mode, impulse: the motion's mode, and the energy that an impulse at the initial time brought; None from an engine
     mode: "Mode | None" = None
     impulse: Any = None
-    # takes times of the step, and later, to derivatives of these states, shape (2n, p, k); None if they are not asked
-    # for, or if the engine does not integrate them
-    moves: Callable[[NDArray[Any]], NDArray[Any]] | None = None
 
 
 class Solutions(NamedTuple):
@@ -105,9 +102,6 @@ class Task(NamedTuple):
     precision: Precision
     end: Any  # the last time
     matrices: MotionMatrices  # of the same motion
-    # takes a time and the state to the derivatives of the state, shape (2n, p), from which to integrate them; None if
-    # they are not asked for
-    moves: Callable[[Any, Numbers], Numbers] | None = None
 
 
 class Engine(Protocol):

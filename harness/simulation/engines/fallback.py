@@ -188,7 +188,6 @@ class FallbackEngine:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
         first = engine_class(chosen).for_motion(self._task)
         weighs = self._automatic and obstruction is None and request.compact is None and self._in_doubles
-        weighs = weighs and self._task.moves is None  # which the Taylor engine integrates in the same steps
         steps = first.steps_ahead(self._task.end, TRIAL) if weighs and dense is not None else None
         if steps is None or not any(other.comparable(request.tol) for other in compared_engines()[1:]):
             return first
@@ -206,7 +205,7 @@ class FallbackEngine:
     def _fallback(self) -> Engine:
         """Return the engine that continues if the first one fails."""
         if self._second is None:
-            problem, request, _, _, matrices, _ = self._task
+            problem, request, _, _, matrices = self._task
             tol = FINE if request.tol is None else request.tol
             self._second = engine_class(FALLBACK)(problem, tol, matrices, request.max_step)
         return self._second

@@ -53,7 +53,7 @@ class Integrator(Protocol):
     # time, last_h: the time that is reached; the length of the last step
     time: Any
     last_h: Any
-    state: Numbers  # coordinates, velocities and what else it integrates: at that time, in place
+    state: Numbers  # shape (2n,): at that time, in place
     tol: Any
 
     def propagate_until(self, until: Any, max_steps: int, **bound: Any) -> tuple[Any, ...]:
@@ -140,8 +140,7 @@ class ProgramEngine:
         state : ndarray, shape (2n,)
             Coordinates, then velocities.
         """
-        self._integrator.time = time_point
-        self.state[:] = state
+        self._go_back(time_point, state)
         self._behind_obstruction = self._obstruction is not None
         self._usual, self._obstruction = 0.0, None
 
@@ -242,7 +241,7 @@ class ProgramEngine:
             dense_steps = self._watched(until, dense, WATCHED)
             return self.time == until, dense_steps
         integrator = self._integrator
-        time_point, before = integrator.time, integrator.state.copy()
+        time_point, before = integrator.time, self.state.copy()
         if dense:
             (_, shortest, longest, steps), dense_steps = self._with_states(until, self._length)
         else:
@@ -284,7 +283,7 @@ class ProgramEngine:
         return dense_steps
 
     def _watched_step(self, until: Any, dense: bool) -> list[Step]:
-        time_point, before = self.time, self._integrator.state.copy()
+        time_point, before = self.time, self.state.copy()
         if dense:
             (outcome, _, step, _), dense_steps = self._with_states(until, 1)
         else:
@@ -358,9 +357,9 @@ class ProgramEngine:
         least = self.watch.least(self.time, self.state)
         return Obstruction(float(self.time), case, reason, lambda t, state: self.watch.least(t, state) > least)
 
-    def _go_back(self, time_point: Any, integrated: Numbers) -> None:
+    def _go_back(self, time_point: Any, state: Numbers) -> None:
         self._integrator.time = time_point
-        self._integrator.state[:] = integrated
+        self.state[:] = state
 
 
 def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:

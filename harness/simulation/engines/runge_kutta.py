@@ -127,7 +127,7 @@ class RungeKuttaEngine(ProgramEngine):
         HolonomError
             The precision is not double, or as for the class.
         """
-        problem, request, precision, end, matrices, _ = task
+        problem, request, precision, end, matrices = task
         if precision.name != "double":
             raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
         decay = decay_until(end, problem, precision)

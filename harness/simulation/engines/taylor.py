@@ -5,11 +5,10 @@ short.
 """
 
 import time
-from collections.abc import Callable, Sequence
 from copy import copy
 from functools import partial
 from itertools import pairwise
-from math import ceil, inf, log10, prod
+from math import ceil, inf, log10
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ from ..constraints.stabilization import equations_of_motion, stabilized_equation
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
-from ..variational_equations import VariationalEquations, units_of
 from .code import Code, better_code, compilation, is_worthwhile, running
 from .engine import Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
@@ -58,10 +56,6 @@ class TaylorEngine(ProgramEngine):
         The last time of the motion, or None for the next one that it reaches.
     max_step : float or None
         Largest step.
-    directions : sequence of str
-        Parameters and initial values, for derivatives of the motion.
-    moves : callable or None
-        As for `Task`.
 
     Raises
     ------
@@ -82,8 +76,6 @@ class TaylorEngine(ProgramEngine):
         matrices: MotionMatrices | None = None,
         end: Any = None,
         max_step: float | None = None,
-        directions: Sequence[str] = (),
-        moves: Callable[[Any, Numbers], Numbers] | None = None,
     ) -> None:
         numbers = read_precision(precision) if isinstance(precision, str) else precision
         super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
@@ -97,19 +89,12 @@ class TaylorEngine(ProgramEngine):
         self._unit = unit_of(self._matrices.nominal.time, self.precision)
         self._chosen, self._end = compact is not None, end
         self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
-        self._variation = VariationalEquations(problem, directions, self._matrices) if moves else None
-        self._moves_at, self._moves_known, self._units = moves, False, np.ones(len(directions))
-        if self._variation is None:
-            self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
-        else:
-            self._program = self._variation.program
+        self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
         stabilized = stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and problem.multipliers
         self._stabilization, self._decay = stabilization, decay_in(problem, decay) if stabilized else None
         begun, number = time.perf_counter(), self.precision.number
         start = np.array([number(problem.start[name]) for name in problem.state])
-        if self._variation is not None:
-            start = np.concatenate([start, np.zeros(prod(self._variation.shape))])
         self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
         self._set_up(code, self._counted[0], start)
         projects = stabilization is Stabilization.PROJECTION and problem.multipliers
@@ -141,7 +126,7 @@ class TaylorEngine(ProgramEngine):
         HolonomError
             The precision cannot hold the tolerance, or as for the class.
         """
-        problem, request, precision, end, matrices, _ = task
+        problem, request, precision, end, matrices = task
         digits = (
             precision.digits + GUARD_DIGITS
             if request.tol is None
@@ -149,10 +134,8 @@ class TaylorEngine(ProgramEngine):
         )
         require_means(at_start(problem), precision, order_for(digits))
         decay = decay_until(end, problem, precision)
-        compact, max_step, method = request.compact, request.max_step, request.stabilization
-        plain = precision.name == "double" and method in (Stabilization.PROJECTION, Stabilization.NONE)
-        varied = (request.sensitivities, task.moves) if plain else ()
-        return cls(problem, request.tol, precision, method, compact, decay, matrices, end, max_step, *varied)
+        compact, max_step = request.compact, request.max_step
+        return cls(problem, request.tol, precision, request.stabilization, compact, decay, matrices, end, max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -204,7 +187,7 @@ class TaylorEngine(ProgramEngine):
         int or None
             None if these steps reach the time or fail.
         """
-        begun, state = self.time, self._integrator.state.copy()
+        begun, state = self.time, self.state.copy()
         outcome = self._without_states(until, trial)[0]
         covered = float(self.time - begun)
         self._integrator.time, self._integrator.state[:] = begun, state
@@ -219,35 +202,15 @@ class TaylorEngine(ProgramEngine):
         """
         longest = max(self._usual, self._integrator.last_h)
         few = most < FEW or until - self.time < FEW * longest
-        begun, before = self.time, self._integrator.state.copy()
-        found = self._one_by_one(until, most) if few else self._at_once(until, most)
-        if not self._have_outgrown(before):
-            return found
-        taken, grown = found[0][-1], self._moves
-        self._go_back(begun, before)
-        if taken > 1:
-            self._length = self._longest_block = taken // 2
-        else:
-            self._set_moves(self._moves, np.maximum(units_of(self.state, grown), 2 * self._units))
-        return self._with_states(until, max(1, taken // 2))
-
-    def _have_outgrown(self, before: Numbers) -> bool:
-        """Return True if derivatives, not the state, decide about steps."""
-        if self._variation is None or not np.isfinite(self._integrator.state).all():
-            return False
-        state, moves = np.split(np.abs(self._integrator.state), [len(self.state)])
-        return bool(np.max(moves) > max(1.0, np.max(state), np.max(np.abs(before[: len(state)]))))
+        return self._one_by_one(until, most) if few else self._at_once(until, most)
 
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True, **self._bound)
         steps = [] if between is None else pairwise(between.times)
-        unit, count = self._unit, len(self.state)
-
-        def states(times: Numbers) -> Numbers:
-            return between(times / unit).T[:count].copy()
-
-        moves = self._moves_of(lambda times: between(times / unit).T[count:])
-        return tuple(taken), [Step(start * unit, end * unit, states, moves=moves) for start, end in steps]
+        unit = self._unit
+        return tuple(taken), [
+            Step(start * unit, end * unit, lambda times: between(times / unit).T.copy()) for start, end in steps
+        ]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Return each step with its Taylor polynomials."""
@@ -259,20 +222,16 @@ class TaylorEngine(ProgramEngine):
             if outcome == self._failed or not taken:
                 break
             shortest, longest = min(shortest, least), max(longest, greatest)
-            coefficients, count = integrator.tc.T[..., None].copy(), len(self.state)
-            states = partial(states_of, begun, rest, self._unit, coefficients[:, :count])
-            moves = self._moves_of(partial(states_of, begun, rest, self._unit, coefficients[:, count:]))
-            dense_steps.append(Step(begun, integrator.time, states, moves=moves))
+            dense_steps.append(
+                Step(
+                    begun,
+                    integrator.time,
+                    partial(states_of, begun, rest, self._unit, integrator.tc.T[..., None].copy()),
+                )
+            )
             if integrator.time == until:
                 break
         return (outcome, shortest, longest, len(dense_steps)), dense_steps
-
-    def _moves_of(self, rows: Callable[[Numbers], Numbers]) -> Callable[[Numbers], Numbers] | None:
-        """Return the derivatives of states, given their rows in the present units."""
-        if self._variation is None:
-            return None
-        shape, units = self._variation.shape, self._units[None, :, None]
-        return lambda times: units * np.reshape(rows(times), (*shape, len(times)))
 
     def restart(self, time_point: Any, state: Numbers) -> None:
         """Continue from another time and state.
@@ -285,33 +244,17 @@ class TaylorEngine(ProgramEngine):
             Coordinates, then velocities.
         """
         super().restart(time_point, state)
-        self._moves_known = False
         if time_point <= self._counted[0]:
             self._counted = time_point, self.steps
 
     def _set_values(self) -> None:
         """Set the values of open inputs in the equations from this time on."""
-        contained, t = len(self._integrator.pars), self._integrator.time
-        if contained and self._variation is None:
-            self._integrator.pars[:] = self.inputs.open_values(t, "right")[:contained]
-        elif contained:
-            self._integrator.pars[:] = self._variation.values(t, self._units)[:contained]
-
-    def _set_moves(self, moves: Numbers, units: Numbers) -> None:
-        """Integrate derivatives (2n, p) from here, in units (p,) of their own."""
-        self._units, self._integrator.state[len(self.state) :] = units, (moves / units).ravel()
-        self._set_values()
-
-    @property
-    def _moves(self) -> Numbers:
-        """Derivatives of the state, of shape (2n, p)."""
-        return self._units * np.reshape(self._integrator.state[len(self.state) :], self._variation.shape)
+        contained = len(self._integrator.pars)
+        if contained:
+            self._integrator.pars[:] = self.inputs.open_values(self._integrator.time, "right")[:contained]
 
     def _begin(self) -> None:
         self._length = self._first_block
-        if self._variation is not None and not self._moves_known:
-            self._moves_known, moves = True, self._moves_at(self.time, self.state.copy())
-            self._set_moves(moves, units_of(self.state, moves))
         if self._problem.tables:
             self._set_values()
 
@@ -326,7 +269,6 @@ class TaylorEngine(ProgramEngine):
         else:
             drift = self._keeper.project(self.time, self.state)
             self._length = min(block_within(self._allowed, self._length, drift), self._longest_block)
-        self._keep_moves()
 
     @property
     def _is_finite(self) -> bool:
@@ -335,14 +277,6 @@ class TaylorEngine(ProgramEngine):
     def _keep_constraints(self) -> None:
         if self._keeper is not None:
             self._keeper.project(self._integrator.time, self.state)
-        self._keep_moves()
-
-    def _keep_moves(self) -> None:
-        """Project the derivatives, and choose their units for the next steps."""
-        if self._variation is not None and np.isfinite(self._integrator.state).all():
-            moves = self._variation.corrected(self.time, self.state.copy(), self._moves)
-            self._set_moves(moves, units_of(self.state, moves))
-            self._longest_block = min(self._longest_block * 5 // 4 + 1, LONGEST_BLOCK)
 
     def _compile_if_worthwhile(self, until: Any) -> None:
         """Compile better code if the remaining steps justify it.
@@ -357,35 +291,31 @@ class TaylorEngine(ProgramEngine):
         left = (self.steps - before) * float((end - self.time) / (self.time - begun))
         if is_worthwhile(self.code, better, self._program.operations, left, float(self._integrator.tol)):
             begun = time.perf_counter()
-            self._set_up(better, self.time, self._integrator.state.copy())
+            self._set_up(better, self.time, self.state)
             self.compile_seconds += time.perf_counter() - begun
 
-    def _set_up(self, code: Code, time_point: Any, integrated: Numbers) -> None:
+    def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
         stabilized = self._stabilization, self._decay
         kind = ("taylor", code, *stabilized, self.precision.name, float(self._unit), *self._tolerance.values())
-        kind += () if self._variation is None else self._variation.kind
-        built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, integrated))
+        built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
         built = copy(built) if self._problem.open_inputs else built
         self._integrator = built if self._unit == 1 else ScaledTime(built, self._unit)
         self._integrator.time = time_point
-        self._integrator.state[:] = integrated
+        self._integrator.state[:] = state
         self._set_values()
-        count = len(self._problem.state)
-        self.state = self._integrator.state[:count]  # a view: what the integrator does shows in it
+        self.state = self._integrator.state  # a view: what the integrator does shows in it
 
-    def _compiled(self, code: Code, integrated: Numbers) -> Any:
+    def _compiled(self, code: Code, state: Numbers) -> Any:
         asked = self._problem, self._program, self.precision
-        if self._variation is not None:
-            equations = self._variation.equations()
-        elif self._decay is None:
+        if self._decay is None:
             equations = equations_of_motion(*asked)
         else:
             equations = stabilized_equations(*asked, self._stabilization, self._decay)
         if self._unit != 1:
             equations = in_unit(equations, self._unit)
         return import_heyoka().taylor_adaptive(
-            equations, integrated, **self._tolerance, **code.options, **self.precision.options
+            equations, state, **self._tolerance, **code.options, **self.precision.options
         )
 
 
