@@ -16,7 +16,7 @@ X satisfies the constraints' derivative, J dq/dp = -f_p and its time derivative,
 
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
-from functools import cached_property
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,12 +34,11 @@ from .engines.engine import Step
 from .evaluation import Numbers
 from .impulses import moves_behind_impulse
 from .initial_tangents import initial_tangents
-from .inputs import Inputs
 from .mode import Mode
 from .nominal import nominal_of
 from .recording import SampleBlock
 from .variation import TIME, Variation, size_of
-from .variational_equations import VariationalEquations, units_of
+from .variational_equations import VariationalEquations, largest, units_of
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
@@ -70,28 +69,25 @@ class _ModeVariation:
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
         self.mode, self.problem, self._directions, self._tol = mode, mode.problem, directions, tol
         self.variation = VariationalEquations(self.problem, directions, mode.matrices)
-        self.inputs = Inputs(self.problem)
         self._code = Code.QUICK
-
-    @cached_property
-    def _tolerance(self) -> dict[str, float]:
-        return tolerance_of(self.problem, self._tol)
-
-    @cached_property
-    def _integrator(self) -> Any:
-        kind = *self.variation.kind, self._code, *self._tolerance.values()
-        return copy(self.problem.once(kind, self.problem.motion, self._compiled))
+        self._integrator = self._compiled()
 
     def _compiled(self) -> Any:
-        equations = self.variation.equations()
-        return import_heyoka().taylor_adaptive(
-            equations, [0.0] * len(equations), **self._tolerance, **self._code.options
-        )
+        options = tolerance_of(self.problem, self._tol) | self._code.options
+        kind = *self.variation.kind, *options.items()
+        return copy(self.problem.once(kind, self.problem.motion, partial(self._made, options)))
 
-    def integrate(self, start: float, state: Numbers, moves: Numbers, end: float, left: float) -> list[_Segment]:
+    def _made(self, options: Mapping[str, object]) -> Any:
+        equations = self.variation.equations()
+        return import_heyoka().taylor_adaptive(equations, [0.0] * len(equations), **options)
+
+    def integrate(
+        self, start: float, state: Numbers, moves: Numbers, end: float, left: float
+    ) -> tuple[list[_Segment], Numbers, Numbers]:
         """Integrate the derivatives through a part, or its halves if they grow much.
 
-        `left` is the remaining time of the motion at the start of the part.
+        `left` is the remaining time of the motion at the start of the part. The state and the projected derivatives
+        at its end are returned with it.
         """
         integrator, units, half = self._integrator, units_of(state, moves), (start + end) / 2
         integrator.time = start
@@ -103,26 +99,19 @@ class _ModeVariation:
                 ErrorKind.NO_SENSITIVITY,
                 detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
             )
-        self._units, count = units, len(state)
-        if steps > 1 and start < half < end and self._have_outgrown(state):
-            first = self.integrate(start, state, moves, half, left)
-            return first + self.integrate(half, *self.reached(moves.shape), end, left)
+        reached, grown = np.split(integrator.state.copy(), [len(state)])
+        # derivatives, not the state, would decide about steps
+        if steps > 1 and start < half < end and np.max(np.abs(grown)) > largest(state, reached):
+            first, *there = self.integrate(start, state, moves, half, left)
+            second, *there = self.integrate(half, *there, end, left)
+            return first + second, *there
 
         def derivatives(times: Numbers) -> Numbers:
-            return units[:, None] * np.reshape(between(times).T[count:], (*moves.shape, len(times)))
+            return units[:, None] * np.reshape(between(times).T[len(state) :], (*moves.shape, len(times)))
 
         self._compile_if_worthwhile(steps * left / (end - start))
-        return [_Segment(start, end, self, derivatives)]
-
-    def _have_outgrown(self, before: Numbers) -> bool:
-        """Return True if derivatives, not the state, decide about steps."""
-        state, moves = np.split(np.abs(self._integrator.state), [len(before)])
-        return bool(np.max(moves) > max(1.0, np.max(state), np.max(np.abs(before))))
-
-    def reached(self, shape: tuple[int, int]) -> tuple[Numbers, Numbers]:
-        """Return the state and the derivatives at the end of the last part, projected."""
-        state, moves = np.split(self._integrator.state.copy(), [len(self.problem.state)])
-        return state, self.variation.corrected(self._integrator.time, state, self._units * moves.reshape(shape))
+        moves_there = self.variation.corrected(end, reached, units * grown.reshape(moves.shape))
+        return [_Segment(start, end, self, derivatives)], reached, moves_there
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the time derivative of the state, shape (2n,)."""
@@ -179,10 +168,9 @@ class _ModeVariation:
 
     def _compile_if_worthwhile(self, steps: float) -> None:
         better, operations = better_code(self._code, read_precision("double")), self.variation.program.operations
-        if better and is_worthwhile(self._code, better, operations, steps, self._tolerance["tol"]):
-            last, self._code = self._integrator.state.copy(), better
-            del self._integrator
-            self._integrator.state[:] = last
+        if better and is_worthwhile(self._code, better, operations, steps, self._integrator.tol):
+            self._code = better
+            self._integrator = self._compiled()
 
 
 class Sensitivities:
@@ -322,11 +310,11 @@ class Sensitivities:
         """Integrate the derivatives to the time of the motion and project them."""
         if not self._steps:
             return
-        self._pieces += self._here.integrate(
+        pieces, self._state, self._moves = self._here.integrate(
             self._time, self._state, self._moves, self._reached, self._end - self._reached
         )
+        self._pieces += pieces
         self._time, self._steps = self._reached, 0
-        self._state, self._moves = self._here.reached(self._moves.shape)
 
     def _require_same_motion(self, state: Numbers) -> None:
         """Reject derivatives if their motion differs from the recorded one."""
@@ -339,7 +327,7 @@ class Sensitivities:
 
     def _at_knot(self, step: Step) -> bool:
         """Return True if a table's next polynomial begins with a step."""
-        values = self._here.inputs.open_values
+        values = self._here.variation.inputs.open_values
         start = np.array(float(step.start))
         return bool(self._problem.tables) and not np.array_equal(values(start, "left"), values(start, "right"))
 

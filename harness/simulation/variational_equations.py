@@ -55,8 +55,7 @@ class VariationalEquations:
                 detail=translatable("the equations are made for one value of %(name)s", name=closed[0]),
             )
         self.problem, self.directions, self.kind = problem, tuple(directions), ("variational", *directions)
-        self.shape = len(problem.state), len(self.directions)
-        self._matrices, self._inputs = matrices, Inputs(problem)
+        self._matrices, self.inputs = matrices, Inputs(problem)
         self.constraints = ConstraintVariation(problem, self.directions)
         parameters = [name for name in self.directions if name in problem.parameters]
         self._seeds = {name: derivative_name(name, name) for name in parameters}
@@ -105,7 +104,7 @@ class VariationalEquations:
         ndarray
             Open inputs, then derivatives of the parameters by themselves.
         """
-        return np.concatenate([self._inputs.open_values(t, "right"), self._sizes / units[self._places]])
+        return np.concatenate([self.inputs.open_values(t, "right"), self._sizes / units[self._places]])
 
     def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
         """Return the nearest derivatives in the mass metric that satisfy the constraints.
@@ -134,6 +133,22 @@ class VariationalEquations:
         return moves
 
 
+def largest(*states: Numbers) -> float:
+    """Return the size of states that derivatives in their units are compared with.
+
+    Parameters
+    ----------
+    *states : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    float
+        Not below one.
+    """
+    return max(1.0, *(float(np.max(np.abs(state))) for state in states))
+
+
 def units_of(state: Numbers, moves: Numbers) -> Numbers:
     """Return units in which derivatives are smaller than the state.
 
@@ -151,5 +166,5 @@ def units_of(state: Numbers, moves: Numbers) -> Numbers:
     ndarray, shape (p,)
         Powers of two, not below one.
     """
-    ratio = GROWTH * np.max(np.abs(moves), axis=0) / max(1.0, np.max(np.abs(state)))
+    ratio = GROWTH * np.max(np.abs(moves), axis=0) / largest(state)
     return 2.0 ** np.ceil(np.log2(np.maximum(ratio, 1.0)))
