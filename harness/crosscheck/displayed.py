@@ -37,7 +37,9 @@ def displayed(tree: Tree) -> Displayed:
             return _number(tree)
         case ["Subscript", name, *indices]:
             return f"{name}[{', '.join(map(str, indices))}]"
-        case ["Multiply", ["Sign", base], ["Power", ["Abs", same], ["Rational", _, _] as exponent]] if base == same:
+        case ["Multiply", ["Sign", base], ["Power", ["Abs", same], ["Rational", int(p), int(q)] as exponent]] if (
+            base == same and p % 2 and q % 2
+        ):
             return displayed(["Power", base, exponent])
         case ["Power", ["Abs", base], ["Rational", int(p), int(q)] as exponent] if p % 2 == 0 and q % 2:
             return displayed(["Power", base, exponent])

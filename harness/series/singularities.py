@@ -121,11 +121,17 @@ def _is_switched(expression: Expression) -> bool:
     """
     match expression:
         case Call(
-            Operation.MULTIPLY, (Call(Operation.SIGN, (x,)), Call(Operation.POWER, (Call(Operation.ABS, (y,)), _)))
+            Operation.MULTIPLY,
+            (
+                Call(Operation.SIGN, (x,)),
+                Call(Operation.POWER, (Call(Operation.ABS, (same,)), Fraction(numerator=p, denominator=q))),
+            ),
+        ) if x == same and p % 2 and q % 2:
+            return _is_switched(x)
+        case Call(Operation.POWER, (Call(Operation.ABS, (x,)), Fraction(numerator=p, denominator=q))) if (
+            p % 2 == 0 and q % 2
         ):
-            return x != y or _is_switched(x)
-        case Call(Operation.POWER, (Call(Operation.ABS, (x,)), Fraction(numerator=p, denominator=q))):
-            return p % 2 == 1 or q % 2 == 0 or _is_switched(x)
+            return _is_switched(x)
         case Call(operation, arguments):
             return operation in (Operation.ABS, Operation.SIGN) or any(map(_is_switched, arguments))
     return False

@@ -126,7 +126,7 @@ def _subjects() -> dict[str, str]:
 def _functions_about(subject: str) -> frozenset[Function]:
     others = (each for each in functions() if each.language != "py")
     words = subject.split("_")
-    return frozenset(each for each in others if all(word in f"{each}{each.body}".lower() for word in words))
+    return frozenset(each for each in others if all(map(f"{each}{each.body}".lower().__contains__, words)))
 
 
 def _by_call(function: Function) -> list[str]:
