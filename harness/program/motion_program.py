@@ -229,6 +229,21 @@ def calls_in(expression: Expression) -> Iterator[Call]:
             yield from calls_in(argument)
 
 
+def calls_of(program: Program) -> Iterator[Call]:
+    """Yield the operations of a program.
+
+    Parameters
+    ----------
+    program : Program
+
+    Yields
+    ------
+    Call
+        An operation with its arguments.
+    """
+    return (call for _, expression in program.assignments for call in calls_in(expression))
+
+
 def expression_of(tree: object, levels: int = DEEPEST) -> Expression:
     """Read an expression.
 

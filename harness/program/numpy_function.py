@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .arithmetic import ELEMENTARY, Arithmetic
-from .motion_program import Constant, Name, Operation, Program, calls_in, names_in
+from .motion_program import Constant, Name, Operation, Program, calls_of, names_in
 
 BLOCK = 4096  # points carried through the program at a time; the fastest of 256, 1024, 4096 and 16384 as measured
 PLACE = {"lineno": 1, "col_offset": 0}  # each node is to have one; to fill them in takes longer than all else
@@ -84,7 +84,7 @@ def needs_scipy(program: Program) -> bool:
     -------
     bool
     """
-    return any(call.operation in OF_SCIPY for _, expression in program.assignments for call in calls_in(expression))
+    return any(call.operation in OF_SCIPY for call in calls_of(program))
 
 
 def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], tuple[ArrayLike, ...]]:

@@ -31,7 +31,7 @@ from sympy.polys.rings import PolyElement, PolyRing, ring
 
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_problem import computing
-from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_in
+from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_of
 from .linear_equations import LinearEquations
 
 UNKNOWNS = 10  # larger systems are not tried
@@ -164,8 +164,7 @@ def _equations_at_rest(
 
 def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:
     """Return the coordinates with sines or cosines."""
-    calls = [call for _, expression in program.assignments for call in calls_in(expression)]
-    arguments = {call.arguments[0] for call in calls if call.operation in ANGLE}
+    arguments = {call.arguments[0] for call in calls_of(program) if call.operation in ANGLE}
     return [name for name in coordinates if Name(name) in arguments]
 
 

@@ -19,7 +19,7 @@ from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, computing, require_analytic
-from ..program.motion_program import Expression, Name, Operation, Program, calls_in, names_in
+from ..program.motion_program import Expression, Name, Operation, Program, calls_of, names_in
 from ..program.precision import read_precision
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
@@ -462,8 +462,7 @@ def _has_corners(program: Program) -> bool:
 
     Polynomials of steps represent one side of it.
     """
-    expressions = [*(expression for _, expression in program.assignments), *program.outputs.values()]
-    return any(call.operation in CORNERED for expression in expressions for call in calls_in(expression))
+    return any(call.operation in CORNERED for call in calls_of(program))
 
 
 class _Rows:

@@ -18,7 +18,7 @@ import numpy as np
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, require_signs_known
-from ...program.motion_program import Operation, calls_in
+from ...program.motion_program import Operation, calls_of
 from ...program.precision import Precision
 from ..accuracy_check import has_root_of
 from ..constraints.factorization import factored_constraints
@@ -327,8 +327,7 @@ class ProgramEngine:
     @cached_property
     def _has_roots(self) -> bool:
         """True if forces may contain real roots, which have no slope at zero."""
-        calls = (call for _, expression in self._problem.motion.assignments for call in calls_in(expression))
-        return any(call.operation is Operation.ABS for call in calls)
+        return any(call.operation is Operation.ABS for call in calls_of(self._problem.motion))
 
     def _pivots_lose(self, t: Any, state: Numbers) -> float:
         """Return the relative error of the program's accelerations.
