@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .described import System, Values, each, expression
 from .failures import ErrorKind, HolonomError
-from .formats import Document, read
+from .formats import Document, read, require
 from .hidden import hidden_character
 from .structs import key, structured
 from .trees import JSON_INTEGERS, Tree
@@ -28,6 +28,7 @@ MOST_SCENES = 1000
 LARGEST = 64 * 2**20  # characters of a description
 BEGINS = re.compile(r'\s*\{\s*"format"\s*:\s*"holonom-description"')  # no scene file in Maxima's language begins so
 TIME = "t"
+SIZE = "closed_form_size"  # a setting for every file
 
 
 @dataclass(frozen=True)
@@ -184,7 +185,7 @@ class Description:
         Parameters
         ----------
         settings : mapping of str to str
-            Numbers, by name of the parameter.
+            Numbers, by name of the parameter, or a positive integer ``closed_form_size``.
 
         Returns
         -------
@@ -193,11 +194,13 @@ class Description:
         Raises
         ------
         HolonomError
-            The system, or a scene, has no such parameter.
+            The system, or a scene, has no such parameter, or the size is not a positive integer.
         """
         content = self.content
         for name, text in settings.items():
             content = _with_value(content, name, _number(text), self.file)
+        if SIZE in settings:
+            require(Document.DESCRIPTION, content)
         return replace(self, content=content)
 
     def with_initial_state(self, scene: str, state: Mapping[str, float]) -> "Description":
@@ -304,6 +307,8 @@ def _rates(dots: str, names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _with_value(content: dict[str, Any], name: str, value: Tree, file: Path) -> dict[str, Any]:
+    if name == SIZE:
+        return content | {SIZE: value, "settings": content["settings"] | {name: value}}
     declared = name in content["system"]["parameters"]
     having = [scene for scene in content["scenes"] if declared or name in scene["parameter_values"]]
     if not declared and not having:

@@ -245,7 +245,6 @@ def free_motion(
     settings: Mapping[str, str],
     limits: Limits,
     order: int | None = None,
-    closed_form_size: int | None = None,
 ) -> FreeMotion:
     """Ask Maxima about the free motion of a scene.
 
@@ -261,8 +260,6 @@ def free_motion(
         Limits of each run of Maxima.
     order : int or None
         Highest order of the multipliers' power series, at least 2, or None for Maxima's ``verdict_order``.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -278,8 +275,8 @@ def free_motion(
     ----------
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
-    asked = scene, order, closed_form_size
-    return with_verdicts(read_free_motion(ask(Document.FREE_MOTION, file, *asked, settings=settings, limits=limits)))
+    text = ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)
+    return with_verdicts(read_free_motion(text))
 
 
 def read_free_motion(text: str) -> FreeMotion:

@@ -152,7 +152,6 @@ def derived_record(
     file: Source | Path,
     settings: Mapping[str, str] = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
-    closed_form_size: int | None = None,
 ) -> "Record":
     """Derive the record of a scene file.
 
@@ -164,8 +163,6 @@ def derived_record(
         Numbers in Maxima's notation, for what the file leaves open and for parameters.
     limits : Limits
         Limits of each run of Maxima.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -176,7 +173,7 @@ def derived_record(
     HolonomError
         As `holonom.documents.ask` and `read_record`.
     """
-    return read_record(ask(Document.RECORD, file, closed_form_size, settings=settings, limits=limits))
+    return read_record(ask(Document.RECORD, file, settings=settings, limits=limits))
 
 
 def read_record(text: str) -> Record:

@@ -51,15 +51,7 @@ if TYPE_CHECKING:
 LOADS_THE_LIBRARY = re.compile(r"\bload\s*\(.*?holonom")
 
 
-@takes_options(*options_of(FreeRequest, "closed_form_size"))
-def load(
-    path: str | Path,
-    scene: str | None = None,
-    limits: Limits | None = None,
-    *,
-    options: dict[str, Any],
-    **settings: Number,
-) -> "Scene":
+def load(path: str | Path, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
     """Open a scene file, or a description.
 
     Parameters
@@ -71,9 +63,9 @@ def load(
         Name of the scene. Default: the last one in the file.
     limits : Limits or None
         Limits of each run of Maxima. Default: 120 s and 4 GiB.
-    {options}
     **settings : int, float, Fraction, Decimal or str
         Values of parameters, and of variables of the file. A float counts as the decimal that prints it.
+        ``closed_form_size`` is the size of the largest closed form, in terms.
 
     Returns
     -------
@@ -99,18 +91,10 @@ def load(
     file = scene_file(path)
     if not file.is_file():
         raise HolonomError(ErrorKind.FILE_MISSING, file, near_file(file))
-    return _opened(file, scene, settings, limits, **options)
+    return _opened(file, scene, settings, limits)
 
 
-@takes_options(*options_of(FreeRequest, "closed_form_size"))
-def system(
-    text: str,
-    scene: str | None = None,
-    limits: Limits | None = None,
-    *,
-    options: dict[str, Any],
-    **settings: Number,
-) -> "Scene":
+def system(text: str, scene: str | None = None, limits: Limits | None = None, **settings: Number) -> "Scene":
     """Open a scene that is given as Maxima text.
 
     Parameters
@@ -119,7 +103,6 @@ def system(
         Text of a scene file, also without ``load("holonom.mac")``.
     scene, limits
         As for `load`.
-    {options}
     **settings : int, float, Fraction, Decimal or str
         As for `load`.
 
@@ -145,21 +128,15 @@ def system(
     file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
-    opened = _opened(file, scene, settings, limits, **options)
+    opened = _opened(file, scene, settings, limits)
     opened._directory = directory  # it is removed with the last scene that reads the file
     return opened
 
 
-def _opened(
-    file: Path,
-    scene: str | None,
-    settings: Mapping[str, Number],
-    limits: Limits | None,
-    closed_form_size: int | None,
-) -> "Scene":
+def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
     limits = limits or Limits()
     warn_unsandboxed(limits)
-    return Scene(file, scene, _settings(settings), limits, closed_form_size)
+    return Scene(file, scene, _settings(settings), limits)
 
 
 @takes_options(
@@ -249,18 +226,11 @@ class Scene:
     <Scene 'examples/pendulum.mac'>
     """
 
-    def __init__(
-        self,
-        file: Path,
-        name: str | None,
-        settings: Mapping[str, str],
-        limits: Limits,
-        closed_form_size: int | None = None,
-    ) -> None:
+    def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
         self.file, self.settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: OwnDirectory | None = None
-        self._source = Source(file, limits, closed_form_size)
+        self._source = Source(file, limits)
         self._derived = Derivations(self._source)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":

@@ -24,12 +24,10 @@ class Source:
         A scene file in Maxima's language, or a description in JSON.
     limits : Limits
         Limits of each run of Maxima.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
     """
 
-    def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS, closed_form_size: int | None = None) -> None:
-        self.file, self.limits, self.closed_form_size = file, limits, closed_form_size
+    def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS) -> None:
+        self.file, self.limits = file, limits
         self._described: dict[tuple[tuple[str, str], ...], Description] = {}
         self.waiting: list[tuple[object, Mapping[str, str]]] = []  # questions of `documents.ask_later`
         self.answers: dict[object, object] = {}  # to these questions
@@ -53,9 +51,7 @@ class Source:
         """
         key = tuple(sorted(settings.items()))
         if key not in self._described:
-            described = describe(self.file, settings, self.limits)
-            size = self.closed_form_size or described.closed_form_size
-            self._described[key] = replace(described, content={**described.content, "closed_form_size": size})
+            self._described[key] = describe(self.file, settings, self.limits)
         return self._described[key]
 
 

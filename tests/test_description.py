@@ -172,9 +172,22 @@ def test_what_maxima_cannot_make_of_a_description_is_refused(tree, switched, tmp
 def test_only_what_is_used_is_set(write_scene):
     with refused("unused_setting"):
         describe(write_scene(SWITCHED), {"stif": "1"})
-    with pytest.raises(HolonomError, match="'closed_form_size'"):  # a variable of the library
-        describe(write_scene(SWITCHED), {"closed_form_size": "7"})
+    with pytest.raises(HolonomError, match="'verdict_order'"):  # a variable of the library
+        describe(write_scene(SWITCHED), {"verdict_order": "7"})
     assert describe(write_scene(SWITCHED), {"stiff": "7"}).scenes[0].parameter_values.trees["k"] == 7
+
+
+def test_the_size_of_closed_forms_is_a_setting_of_every_file(write_scene, tmp_path):
+    described = describe(write_scene(SWITCHED), {"closed_form_size": "7"})
+    assert described.closed_form_size == 7
+    document = written(described, tmp_path)
+    assert describe(document, {"closed_form_size": "9"}).closed_form_size == 9
+    assert json.loads(ask(Document.RECORD, document, settings={"closed_form_size": "1"}))["derivations"][0]["left_out"]
+    for size in ("0", "-1", "3/2"):
+        with refused("wrong_closed_form_size"):
+            describe(write_scene(SWITCHED), {"closed_form_size": size})
+        with pytest.raises(HolonomError):
+            describe(document, {"closed_form_size": size})
 
 
 def test_the_record_has_the_system_of_the_description(switched):

@@ -10,7 +10,7 @@ from ..extras import missing_package
 from ..language import ENGLISH, LANGUAGES
 from ..sandbox import Limits
 from .group import holonom
-from .options import limits_closed_forms, runs_scenes, takes_settings
+from .options import runs_scenes, takes_settings
 from .outputs import OutputFile, SceneFile
 
 EXTRAS = (
@@ -47,7 +47,6 @@ EXTRAS = (
     help="Language of the pages. Default: en. May be repeated; further languages go to subdirectories.",
 )
 @takes_settings
-@limits_closed_forms
 @runs_scenes
 def companion(
     scenes: Sequence[Path],
@@ -55,7 +54,6 @@ def companion(
     pdf: Path | None,
     languages: Sequence[str],
     settings: dict[str, str],
-    closed_form_size: int | None,
     limits: Limits,
 ) -> int:
     """Make the textbook, or pages of a SCENE.
@@ -70,9 +68,9 @@ def companion(
     from .console import make_console
 
     given = tuple(settings.items())
-    if (given or closed_form_size) and not scenes:
-        raise click.UsageError(f"{'--set' if given else '--closed-form-size'} needs a SCENE")
-    chapters = chapters_of_scenes(scenes, given, limits, closed_form_size) if scenes else chapters_of_the_paper()
+    if given and not scenes:
+        raise click.UsageError("--set and --closed-form-size need a SCENE")
+    chapters = chapters_of_scenes(scenes, given, limits) if scenes else chapters_of_the_paper()
     runs = {run for chapter in chapters.values() for run in chapter.runs.values()}
     with progress(f"Making {directory}", len(runs)) as done:
         make_site(scenes, chapters, directory, pdf, tuple(dict.fromkeys(languages)) or (ENGLISH,), done)

@@ -12,7 +12,7 @@ from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, limits_closed_forms, present, publish, runs_scenes, takes_settings, writes_json
+from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
@@ -45,14 +45,12 @@ def describe(scene: Path, settings: dict[str, str], json_file: Path | None, limi
 @holonom.command(examples=["derive examples/pendulum.mac", "derive examples/pendulum.mac --tex pendulum.tex"])
 @click.argument("scene", type=SceneFile())
 @takes_settings
-@limits_closed_forms
 @writes_json
 @click.option("--tex", "tex_file", metavar="FILE|-", type=OutputFile(), help="Write a LaTeX document.")
 @runs_scenes
 def derive(
     scene: Path,
     settings: dict[str, str],
-    closed_form_size: int | None,
     json_file: Path | None,
     tex_file: Path | None,
     limits: Limits,
@@ -67,7 +65,7 @@ def derive(
     from ..record import read_record
     from .console import make_console
 
-    text = ask(Document.RECORD, scene, closed_form_size, settings=settings, limits=limits)
+    text = ask(Document.RECORD, scene, settings=settings, limits=limits)
     record = read_record(text)
     _publish_document(record, tex_file)
     publish(text, json_file)
@@ -79,7 +77,6 @@ def derive(
 @holonom.command(examples=["check examples/pendulum.mac", "check examples/arm.mac --json -"])
 @click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=SceneFile())
 @takes_settings
-@limits_closed_forms
 @writes_json
 @click.option("--seed", metavar="TEXT", help="Repeat the random points of an earlier check, which printed this seed.")
 @click.option(
@@ -95,7 +92,6 @@ def derive(
 def check(
     scenes: Sequence[Path],
     settings: dict[str, str],
-    closed_form_size: int | None,
     json_file: Path | None,
     seed: str | None,
     result_files: Sequence[Path],
@@ -121,7 +117,7 @@ def check(
         with run_in_background(scenes[0], limits, _import_what_checks):
             described = [source.description(settings) for source in sources]
             child.send(sources)
-            records = [derived_record(source, settings, closed_form_size=closed_form_size) for source in sources]
+            records = [derived_record(source, settings) for source in sources]
 
         from ..crosscheck.check import check_record
         from ..crosscheck.motions import verdicts_out_of_time
@@ -130,7 +126,7 @@ def check(
 
         with doing("checking with SymPy"):
             checked = [
-                check_record(record, description, seed, closed_form_size, time_to_limit() - TIME_TO_TELL)
+                check_record(record, description, seed, time_to_limit() - TIME_TO_TELL)
                 for record, description in zip(records, described, strict=True)
             ]
             over = [verdicts_out_of_time(description) for description in described]

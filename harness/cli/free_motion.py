@@ -38,7 +38,7 @@ def free(
     from ..formats import Document
 
     with run_in_background(scene_file, limits, _import_readers):
-        asked = request.scene, options["order"], options["closed_form_size"]
+        asked = request.scene, options["order"]
         text = ask(Document.FREE_MOTION, scene_file, *asked, settings=request.settings, limits=limits)
 
     from ..crosscheck.report import Verdict

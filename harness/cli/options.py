@@ -14,7 +14,7 @@ import click
 from ..failures import HolonomError
 from ..hidden import visible
 from ..options import choices_of, kind_of, options_of, read, read_time
-from ..program.request import FreeRequest, Request, read_settings
+from ..program.request import Request, read_settings
 from ..sandbox import UNSANDBOXED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
@@ -47,7 +47,7 @@ def writes_json(command: Callable[..., int]) -> Callable[..., int]:
 
 
 def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command the option --set.
+    """Give a command the options --set and --closed-form-size.
 
     Parameters
     ----------
@@ -57,16 +57,29 @@ def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
     Returns
     -------
     callable
-        The function with the option.
+        The function with the options.
     """
-    return click.option(
+
+    @click.option(
         "--set",
         "settings",
         metavar="NAME=VALUE",
         multiple=True,
         callback=_read_settings,
         help="Set a parameter, or a variable of the scene file. May be repeated.",
-    )(command)
+    )
+    @click.option(
+        "--closed-form-size",
+        metavar="N",
+        type=click.IntRange(1),
+        help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
+    )
+    @functools.wraps(command)
+    def called(*, settings: dict[str, str], closed_form_size: int | None, **options: Any) -> int:
+        size = {} if closed_form_size is None else {"closed_form_size": str(closed_form_size)}
+        return command(settings=settings | size, **options)
+
+    return called
 
 
 def _read_settings(ctx: click.Context, parameter: click.Parameter, texts: tuple[str, ...]) -> dict[str, str]:
@@ -134,9 +147,6 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
         help=stated.help,
         **details,
     )
-
-
-limits_closed_forms = _click_option(*options_of(FreeRequest, "closed_form_size"))
 
 
 def asks_one_scene(*taken: Field) -> Callable[[Callable[..., int]], Callable[..., int]]:

@@ -15,7 +15,7 @@ from ..sandbox import Limits
 from ..source import describe
 from .chapter import Chapter
 from .motions import motion
-from .runs import Derived, Run, Settings, answer, derive
+from .runs import NO_SETTINGS, Derived, Run, Settings, answer, derive
 
 TEXTS = Path(__file__).with_name("own")
 PAGES = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
@@ -68,7 +68,7 @@ def or_reason(compute: Callable[..., Any], *arguments: Any) -> Any:
         return translatable_error(error)
 
 
-def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int | None = None) -> FileAnswers:
+def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
     """Return all answers about a scene file.
 
     Parameters
@@ -79,8 +79,6 @@ def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int 
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -88,21 +86,18 @@ def study(file: Path, settings: Settings, limits: Limits, closed_form_size: int 
         Derivation, and free motion, series and motion by scene.
     """
     titles = {scene.name: scene.title for scene in describe(file, dict(settings), limits).scenes}
-    size = (("closed_form_size", closed_form_size),)
     return FileAnswers(
         file.name,
         file.read_text(encoding="utf-8", errors="replace"),
-        derive(file, settings, limits, closed_form_size),
+        derive(file, settings, limits),
         titles,
-        {name: or_reason(answer, "free", file, name, size, settings, limits) for name in titles},
+        {name: or_reason(answer, "free", file, name, NO_SETTINGS, settings, limits) for name in titles},
         {name: or_reason(answer, "series", file, name, OPTIONS_OF_SERIES, settings, limits) for name in titles},
         {name: or_reason(motion, file, name, None, settings, limits) for name in titles},
     )
 
 
-def chapters_of_scenes(
-    files: Sequence[Path], settings: Settings, limits: Limits, closed_form_size: int | None = None
-) -> dict[str, Chapter]:
+def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits) -> dict[str, Chapter]:
     """Return the chapters of the pages about scene files, by page name.
 
     Parameters
@@ -113,8 +108,6 @@ def chapters_of_scenes(
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for each file's own.
 
     Returns
     -------
@@ -123,7 +116,7 @@ def chapters_of_scenes(
     """
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
-        chapter = Chapter({"study": Run(study, (file, settings, limits, closed_form_size))})
+        chapter = Chapter({"study": Run(study, (file, settings, limits))})
         found |= {f"{prefix}{name}": chapter for name in PAGES}
     return found
 

@@ -50,7 +50,6 @@ def derive(
     file: Path,
     settings: Settings = NO_SETTINGS,
     limits: Limits = DEFAULT_LIMITS,
-    closed_form_size: int | None = None,
 ) -> Derived:
     """Return the derivation of a scene file, cross-checked.
 
@@ -62,8 +61,6 @@ def derive(
         Values of parameters.
     limits : Limits
         Limits of Maxima's runs.
-    closed_form_size : int or None
-        Number of terms beyond which closed forms are left out, or None for the file's own.
 
     Returns
     -------
@@ -72,7 +69,7 @@ def derive(
     """
     from ..crosscheck.check import check_record
 
-    source = Source(file, limits, closed_form_size)
+    source = Source(file, limits)
     record = derived_record(source, dict(settings), limits)
     return Derived(record, check_record(record, source.description(dict(settings))))
 

@@ -17,7 +17,7 @@ from . import derivation, initial_motion
 from .derivation import CheckedDerivation
 from .independent import IndependentEquations
 from .initial_motion import CheckedScene
-from .premises import Difference, Premises, differences, premises_of
+from .premises import Difference, Premises, differences
 from .redundancy import verify_redundancy
 from .relations import NotComparable
 from .report import OPINION, CheckReport, CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
@@ -45,7 +45,6 @@ def check_record(
     record: Record,
     description: Description,
     seed: str | None = None,
-    closed_form_size: int | None = None,
     seconds: float = math.inf,
 ) -> CheckReport:
     """Compare every equation of a record with the evaluation of a description.
@@ -58,8 +57,6 @@ def check_record(
         Description of the scene file. Nothing of it is taken from the record.
     seed : str or None
         Seed of the random points. None is for a fresh one.
-    closed_form_size : int or None
-        The limit that the record was derived with, or None for that of the description.
     seconds : float
         Time for all verdicts. Equations without a verdict by then are undecided.
 
@@ -70,7 +67,7 @@ def check_record(
         difference between record and description.
     """
     seed = seed or fresh_seed()
-    premises = premises_of(description, closed_form_size)
+    premises = Premises(description)
     return CheckReport(tuple(_Check(record, premises, seed, TimeLimit(seconds)).verdicts()), seed)
 
 
@@ -79,7 +76,7 @@ class _Check:
 
     def __init__(self, record: Record, premises: Premises, seed: str, time: TimeLimit) -> None:
         self._record, self._premises, self._seed, self._time = record, premises, seed, time
-        self._limit = premises.closed_form_size
+        self._limit = premises.description.closed_form_size
 
     def verdicts(self) -> Iterator[EquationVerdict]:
         """Return verdicts on the whole record, in its order."""

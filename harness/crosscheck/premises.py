@@ -35,10 +35,9 @@ SHORTEST = mp.mpf(2) ** -27
 
 @dataclass(frozen=True)
 class Premises:
-    """A description with a limit of closed forms, its own or the caller's."""
+    """A description, as the record is compared with it."""
 
     description: Description
-    closed_form_size: int
 
     @property
     def system(self) -> System:
@@ -53,22 +52,6 @@ class Premises:
         """
         scenes = self.description.scenes
         return tuple(scene for scene in scenes if not scene.prescribed_reactions and not scene.servo_trees)
-
-
-def premises_of(description: Description, closed_form_size: int | None = None) -> Premises:
-    """Return the premises of a description, with the caller's limit if there is one.
-
-    Parameters
-    ----------
-    description : Description
-    closed_form_size : int or None
-        Limit of closed forms, or None for that of the description.
-
-    Returns
-    -------
-    Premises
-    """
-    return Premises(description, closed_form_size or description.closed_form_size)
 
 
 class Difference(NamedTuple):

@@ -72,12 +72,6 @@ class FreeRequest:
         metavar="N",
         least=2,
     )
-    closed_form_size: int | None = option(
-        None,
-        "Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
-        metavar="N",
-        least=1,
-    )
 
 
 class Index(StrEnum):

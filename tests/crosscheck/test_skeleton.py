@@ -14,6 +14,7 @@ from holonom.record import Equation, LeftOut, Record, Relation, derived_record
 from holonom.source import Source
 
 AGREES = CheckResult(Verdict.AGREES, 50, 8)
+SHORT = {"closed_form_size": "8"}
 
 
 @pytest.fixture
@@ -24,8 +25,8 @@ def all_agrees(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(check, "verify_redundancy", lambda *arguments: AGREES)
 
 
-def disagreeing(record: Record, description: Description, limit: int | None = None) -> set[str]:
-    report = check_record(record, description, closed_form_size=limit)
+def disagreeing(record: Record, description: Description) -> set[str]:
+    report = check_record(record, description)
     return {found.id for found in report.verdicts if found.verdict is Verdict.DISAGREES}
 
 
@@ -129,25 +130,25 @@ def coupled(write_scene) -> Source:
 
 
 def test_zeros_left_out_of_a_large_mass_matrix_are_zeros_and_nothing_else_may_be(coupled):
-    record, description = derived_record(coupled, closed_form_size=8), coupled.description()
+    record, description = derived_record(coupled, SHORT), coupled.description(SHORT)
     split = equation_of(record, "kinetic_energy")
     names = [str(relation.left) for relation in split.relations]
     assert names == ["A[1, 1]", "A[1, 3]", "A[2, 2]", "A[3, 1]", "A[3, 3]", "B[1]", "B[2]", "B[3]", "T0"]
-    assert not disagreeing(record, description, 8)
+    assert not disagreeing(record, description)
     for i in range(len(names)):
         short = dataclasses.replace(split, relations=split.relations[:i] + split.relations[i + 1 :])
         others = [short if each.id == split.id else each for each in record.derivations[0].equations]
-        assert disagreeing(with_equations(record, *others), description, 8) == {"kinetic_energy"}, names[i]
+        assert disagreeing(with_equations(record, *others), description) == {"kinetic_energy"}, names[i]
 
 
 def test_what_is_left_out_is_an_exact_group_of_a_known_size(coupled):
-    record, description = derived_record(coupled, closed_form_size=8), coupled.description()
+    record, description = derived_record(coupled, SHORT), coupled.description(SHORT)
     (derived,) = record.derivations
     assert derived.left_out.numbers == ("4", "5", "8", "9", "10", "11")
     for changes in ({"size": 9}, {"limit": 7}, {"numbers": ("4",)}, {"numbers": (*derived.left_out.numbers, "12")}):
         false = with_derivation(record, left_out=derived.left_out._replace(**changes))
-        assert disagreeing(false, description, 8) == {"left_out"}
-    assert {"left_out", "accelerations"} <= disagreeing(record, description)
+        assert disagreeing(false, description) == {"left_out"}
+    assert {"left_out", "accelerations"} <= disagreeing(record, coupled.description())
 
 
 def test_what_a_time_limit_interrupts_is_undecided_and_not_what_was_before_it(

@@ -93,6 +93,6 @@ def test_derive_says_where_the_document_cannot_be_written(particle_scene, tmp_pa
 
 
 def test_a_mass_matrix_without_its_zeros_is_no_smaller_matrix(particle_scene):
-    text = tex_document(derived_record(particle_scene, closed_form_size=1))
+    text = tex_document(derived_record(particle_scene, {"closed_form_size": "1"}))
     assert "m & 0" not in text
     assert "\\text{and zero for all other indices}" in text
