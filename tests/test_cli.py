@@ -96,6 +96,18 @@ def test_check_of_several_scenes_is_an_array(particle_scene, holonom_here):
     assert [report["scene"] for report in reports] == [str(particle_scene)] * 2
 
 
+def test_check_of_an_invalid_scene_checks_the_others(particle_scene, holonom_here, tmp_path):
+    invalid = tmp_path / "invalid.mac"
+    invalid.write_text("system : 1$")
+    done = holonom_here("check", invalid, particle_scene, invalid, "--json", tmp_path / "found.json")
+    assert done.returncode == 2
+    assert done.stderr.count("holonom: error:") == done.stderr.count("invalid.mac") == 2
+    (report,) = json.loads((tmp_path / "found.json").read_text())
+    assert (report["scene"], report["disagreements"]) == (str(particle_scene), 0)
+    assert holonom_here("check", invalid, invalid, "--json", tmp_path / "none.json").returncode == 2
+    assert not (tmp_path / "none.json").exists()
+
+
 def test_a_disagreement_is_reported_and_leaves_with_one(particle_record, monkeypatch, capsys, particle_scene):
     wrong = json.loads(particle_record)
     multipliers = next(e for e in wrong["derivations"][0]["equations"] if e["id"] == "multipliers")

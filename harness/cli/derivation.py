@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from ..failures import HolonomError
 from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
+from ..source import Source
 from ..supervisor import doing, time_to_limit
 from .background import run_in_background
 from .group import holonom
@@ -19,7 +21,6 @@ if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport, EquationVerdict
     from ..crosscheck.results import Content
     from ..record import Record
-    from ..source import Source
 
 TIME_TO_TELL = 1.0  # seconds reserved for the verdicts found within a time limit
 
@@ -101,49 +102,50 @@ def check(
     """Check the derivation with SymPy.
 
     Every equation, program and series of each SCENE is compared with an independent SymPy evaluation. The exit status
-    is 1 if one disagrees or could not be decided.
+    is 1 if one disagrees or could not be decided. If a SCENE is invalid, it is 2, and the others are checked.
     """
+    from ..crosscheck.report import Verdict
     from ..crosscheck.seed import fresh_seed
-    from ..record import derived_record
-    from ..source import Source
-    from .beside import beside, result_of
+    from ..display.derivation import show_reports
 
     if result_files and len(scenes) > 1:
         raise click.UsageError("--result needs one SCENE")
     results = _read_results(result_files)
     seed = seed or fresh_seed()
-    sources = [Source(scene, limits) for scene in scenes]
+    reports, errors = [], []
+    for scene in scenes:
+        try:
+            reports.append((as_given(scene), _checked(Source(scene, limits), settings, seed, results)))
+        except HolonomError as error:
+            errors.append(error)
+    documents = [_report_document(scene, report) for scene, report in reports]
+    if documents:
+        present(documents[0] if len(scenes) == 1 else documents, json_file, show_reports, reports)
+    if errors:
+        raise ExceptionGroup("scenes without a check", errors)
+    unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
+    return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
+
+
+def _checked(source: Source, settings: dict[str, str], seed: str, results: Sequence["Content"]) -> "CheckReport":
+    """Check one scene file, its motions beside its equations."""
+    from ..record import derived_record
+    from .beside import beside, result_of
+
     with beside(_verify_motions, settings, seed) as child:
-        with run_in_background(scenes[0], limits, _import_what_checks):
-            described = [source.description(settings) for source in sources]
-            child.send(sources)
-            records = [derived_record(source, settings) for source in sources]
+        with run_in_background(source.file, source.limits, _import_what_checks):
+            description = source.description(settings)
+            child.send(source)
+            record = derived_record(source, settings)
 
         from ..crosscheck.check import check_record
         from ..crosscheck.motions import verdicts_out_of_time
-        from ..crosscheck.report import Verdict
-        from ..display.derivation import show_reports
-
-        with doing("checking with SymPy"):
-            checked = [
-                check_record(record, description, seed, time_to_limit() - TIME_TO_TELL)
-                for record, description in zip(records, described, strict=True)
-            ]
-            over = [verdicts_out_of_time(description) for description in described]
-            motions = result_of(child, time_to_limit() - TIME_TO_TELL, over)
-    reports = [
-        (as_given(source.file), report.with_verdicts(verdicts))
-        for source, report, verdicts in zip(sources, checked, motions, strict=True)
-    ]
-    if results:
         from ..crosscheck.results import verify_result
 
-        verdicts = [verify_result(described[0], each) for each in results]
-        reports = [(reports[0][0], reports[0][1].with_verdicts(verdicts))]
-    documents = [_report_document(scene, report) for scene, report in reports]
-    present(documents[0] if len(documents) == 1 else documents, json_file, show_reports, reports)
-    unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
-    return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
+        with doing("checking with SymPy"):
+            report = check_record(record, description, seed, time_to_limit() - TIME_TO_TELL)
+            motions = result_of(child, time_to_limit() - TIME_TO_TELL, verdicts_out_of_time(description))
+    return report.with_verdicts([*motions, *(verify_result(description, each) for each in results)])
 
 
 def _read_results(files: Sequence[Path]) -> list["Content"]:
@@ -154,21 +156,17 @@ def _read_results(files: Sequence[Path]) -> list["Content"]:
     return [read_result(file) for file in files]
 
 
-def _verify_motions(sources: Sequence["Source"], settings: dict[str, str], seed: str) -> list[list["EquationVerdict"]]:
-    """Ask Maxima for the motions of each source, and verify them."""
+def _verify_motions(source: Source, settings: dict[str, str], seed: str) -> list["EquationVerdict"]:
+    """Ask Maxima for the motions of a source, and verify them."""
     from ..crosscheck.questions import ask_for_check
 
-    with run_in_background(sources[0].file, sources[0].limits, _import_verification):
-        asked = [ask_for_check(source, settings) for source in sources]
+    with run_in_background(source.file, source.limits, _import_verification):
+        asked = ask_for_check(source, settings)
 
     from ..crosscheck.motions import motion_verdicts, read_motions
 
-    verdicts = []
-    for source, answers in zip(sources, asked, strict=True):
-        description = source.description(settings)
-        motions = read_motions(description, answers)
-        verdicts.append(list(motion_verdicts(description, motions, seed, time_to_limit() - TIME_TO_TELL)))
-    return verdicts
+    description = source.description(settings)
+    return list(motion_verdicts(description, read_motions(description, asked), seed, time_to_limit() - TIME_TO_TELL))
 
 
 def _import_what_checks() -> None:

@@ -52,8 +52,10 @@ class Commands(click.Group):
         try:
             with naming_the_extra():
                 return super().invoke(ctx)
-        except HolonomError as error:
-            return _rejected(error, verbose, self._options(ctx), str(ctx.meta.get(STANDARD_INPUT, "")))
+        except (HolonomError, ExceptionGroup) as error:
+            errors = error.exceptions if isinstance(error, ExceptionGroup) else (error,)
+            standing_in = str(ctx.meta.get(STANDARD_INPUT, ""))
+            return max(_rejected(each, verbose, self._options(ctx), standing_in) for each in errors)
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
