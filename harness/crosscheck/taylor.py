@@ -21,20 +21,6 @@ class Taylor:
     def __init__(self, order: int) -> None:
         self.order = order
 
-    def constant(self, number: mp.mpf | int) -> Polynomial:
-        """Return a number as a polynomial.
-
-        Parameters
-        ----------
-        number : mpf or int
-            The number.
-
-        Returns
-        -------
-        Polynomial
-        """
-        return (mp.mpf(number),)
-
     def add(self, *terms: Polynomial) -> Polynomial:
         """Add polynomials.
 

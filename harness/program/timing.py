@@ -29,25 +29,6 @@ class Timer:
         self._seconds.argtypes = (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_long)
         self._seconds.restype = ctypes.c_double
 
-    def one_point(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> float:
-        """Measure one call of ``function(in, out)``.
-
-        Parameters
-        ----------
-        function : Compiled
-            Compiled function.
-        point : ndarray, shape (inputs,)
-            Its inputs.
-        outputs : int
-            Number of its outputs.
-
-        Returns
-        -------
-        float
-            Shortest time measured, in seconds.
-        """
-        return shortest_times({0: self.batch(function, point, outputs)})[0]
-
     def batch(self, function: Compiled, point: NDArray[np.float64], outputs: int) -> Batch:
         """Return a batch of calls of ``function(in, out)``.
 
