@@ -1,7 +1,9 @@
 """High-level API: one object for all that a scene can be asked."""
 
+import re
 import subprocess
 import sys
+import zipfile
 from fractions import Fraction
 from pathlib import Path
 
@@ -270,6 +272,21 @@ def test_every_form_of_the_program_gives_the_same_numbers(pendulum, tmp_path):
     assert module["motion"](point.tolist()) == pytest.approx(program.lambdify()(point), rel=1e-12)
     program.to_c(tmp_path / "crane", name="crane", parameters=["m"])
     assert {file.name for file in (tmp_path / "crane").iterdir()} >= {"crane.c", "crane.h", "CMakeLists.txt"}
+
+
+def test_a_program_s_forms_are_those_of_the_targets(pendulum, tmp_path):
+    program = pendulum.program()
+    assert program.to_matlab(["m"], "swing") == program.written("matlab", "swing", ["m"])
+    assert "swing" in program.to_matlab(name="swing")
+    assert program.to_javascript() == program.written("javascript")
+    assert len({program.to_python(), program.to_matlab(), program.to_javascript(), program.document}) == 4
+    program.to_fmu(tmp_path / "swing.fmu", name="swing", parameters=["m"])
+    with zipfile.ZipFile(tmp_path / "swing.fmu") as unit:
+        assert {"modelDescription.xml", "sources/swing.c"} & set(unit.namelist())
+    assert [str(n) for n in (len(program.inputs), len(program.outputs), program.operations)] == re.findall(
+        r"\d+", repr(program)
+    )
+    assert program.operations == program.program.operations > 0
 
 
 def test_a_motion_is_drawn_for_notebooks_and_files(pendulum, tmp_path):

@@ -8,10 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
+from holonom.crosscheck.motion_program import ScenePrograms, verify_programs, why_missing
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
@@ -236,3 +237,23 @@ def test_a_wrong_table_is_found(programs):
     wrong = replace(problem, tables=(replace(table, pieces=tuple(pieces)),))
     found = verify_programs(source.description(), [replace(scene, problems={Solve.DIRECT: wrong})], "table")
     assert Verdict.DISAGREES in {each.found.verdict for each in found}
+
+
+@pytest.mark.parametrize(
+    ("kind", "verdict"),
+    [
+        (ErrorKind.REFUSED, Verdict.NOTHING),
+        (ErrorKind.TOO_LONG, Verdict.UNDECIDED),
+        (ErrorKind.TOO_LARGE, Verdict.UNDECIDED),
+    ],
+)
+def test_a_program_that_maxima_does_not_write_leaves_nothing_to_check(kind, verdict):
+    found = why_missing(HolonomError(kind, "ten"))
+    assert found == (verdict, None, None, HolonomError(kind, "ten").reason)
+
+
+def test_other_errors_of_maxima_are_errors_of_the_check():
+    error = HolonomError(ErrorKind.NOT_MAXIMA, "ten")
+    with pytest.raises(HolonomError) as caught:
+        why_missing(error)
+    assert caught.value is error

@@ -116,6 +116,12 @@ def test_engines_agree_on_the_squeezer_in_fifty_digits():
     assert relative_digits(compiled(40, "50", ANDREWS), series(ANDREWS, 40, 50)) >= 48
 
 
+def test_a_shorter_series_is_the_beginning_of_a_longer_one():
+    longer, shorter = (holonom.load(PENDULUM).series(order=order, precision=30) for order in (9, 5))
+    assert longer.up_to(5) == shorter
+    assert longer.up_to(9) == longer
+
+
 def test_automatic_arithmetic_is_exact_where_it_can_be():
     assert series(PAPER, 4, "automatic").arithmetic == "exact"
     assert series(PENDULUM, 4, "automatic", "swing_scene").arithmetic == "bigfloat(30)"

@@ -1,12 +1,14 @@
 """Radii of convergence that the equations of motion decide: closed forms of motions with weak singularities."""
 
 import math
+from fractions import Fraction
 
 import mpmath
 import pytest
 
 import holonom
-from holonom.series.singularities import _multiple_zero
+from holonom.program.motion_program import Operation
+from holonom.series.singularities import COMPLEX, MPMATH, _multiple_zero
 
 ONE = """
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
@@ -120,3 +122,37 @@ def test_a_function_without_slope_has_no_multiple_zero():
     """Newton's method cannot begin at a place where the derivatives vanish."""
     assert _multiple_zero(lambda z: (mpmath.mpf(1),), 1j) is None
     assert _multiple_zero(lambda z: (z * z - 4,), 2) == 2
+
+
+BY_MPMATH = {
+    Operation.ADD: (3, lambda *terms: mpmath.fsum(terms)),
+    Operation.MULTIPLY: (3, lambda *factors: mpmath.fprod(factors)),
+    Operation.SUBTRACT: (2, lambda a, b: a - b),
+    Operation.DIVIDE: (2, lambda a, b: a / b),
+    Operation.NEGATE: (1, lambda a: -a),
+    Operation.POWER: (2, mpmath.power),
+    Operation.SIGN: (1, lambda a: 1),
+    Operation.EXP: (1, mpmath.exp),
+    Operation.LN: (1, mpmath.log),
+    Operation.SQRT: (1, mpmath.sqrt),
+    Operation.TANH: (1, mpmath.tanh),
+    Operation.ERF: (1, mpmath.erf),
+    Operation.ARCTAN2: (2, lambda y, x: mpmath.atan(y / x)),
+}
+
+
+@pytest.mark.parametrize("operation", BY_MPMATH)
+@pytest.mark.parametrize("z", [(0.3, 1.5, 0.25), (0.5 - 0.25j, 1.25 + 0.5j, 1j)])
+def test_operations_go_on_into_the_complex_plane(operation, z):
+    count, function = BY_MPMATH[operation]
+    for arithmetic, number in ((COMPLEX, complex), (MPMATH, mpmath.mpmathify)):
+        found = arithmetic.operations[operation](*map(number, z[:count]))
+        assert abs(complex(found) - complex(function(*z[:count]))) < 1e-13
+
+
+@pytest.mark.parametrize("exponent", [Fraction(3), Fraction(-2), Fraction(1, 3), Fraction(-5, 2)])
+def test_powers_go_on_into_the_complex_plane(exponent):
+    z = 0.5 - 0.25j
+    for arithmetic, number in ((COMPLEX, complex), (MPMATH, mpmath.mpmathify)):
+        assert complex(arithmetic.power(number(z), exponent)) == pytest.approx(z ** float(exponent), rel=1e-14)
+        assert complex(arithmetic.number(exponent)) == pytest.approx(float(exponent), rel=1e-15)

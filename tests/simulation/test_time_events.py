@@ -1,0 +1,51 @@
+"""Functions of the time that are affine, against their values at rational times."""
+
+from fractions import Fraction
+
+import pytest
+
+from holonom.program.motion_program import Name, Program, expression_of
+from holonom.program.request import Solve
+from holonom.simulation.time_events import _affine
+
+
+def program(expression: object) -> Program:
+    return Program(None, Solve.DIRECT, "bordered", 0, ("t", "x"), (("w", expression_of(expression)),), {"f": Name("w")})
+
+
+HALF = ["Rational", 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("expression", "value"),
+    [
+        (["Add", "t", 3, "t"], lambda t: 2 * t + 3),
+        (["Subtract", 3, ["Multiply", 5, "t"]], lambda t: 3 - 5 * t),
+        (["Negate", ["Add", "t", HALF]], lambda t: -t - Fraction(1, 2)),
+        (["Multiply", ["Add", "t", 1], HALF, 6], lambda t: 3 * t + 3),
+        (["Multiply", 2, ["Subtract", "t", 1]], lambda t: 2 * t - 2),
+        (["Divide", ["Subtract", "t", 4], 3], lambda t: (t - 4) / 3),
+        (["Subtract", ["Multiply", 4, "t"], ["Divide", "t", HALF]], lambda t: 2 * t),
+        (["Divide", 1, 8], lambda t: Fraction(1, 8)),
+    ],
+)
+def test_affine_functions_have_their_values(expression, value):
+    found = _affine(program(expression))
+    assert [found.a + found.b * t for t in (0, 1, 7)] == [value(Fraction(t)) for t in (0, 1, 7)]
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        ["Multiply", "t", "t"],
+        ["Multiply", "t", 2, "t"],
+        ["Divide", 1, "t"],
+        ["Divide", "t", ["Subtract", 1, 1]],
+        ["Power", "t", 2],
+        ["Sin", "t"],
+        ["Add", "t", "Pi"],
+        ["Add", "t", "x"],
+    ],
+)
+def test_others_have_no_known_times(expression):
+    assert _affine(program(expression)) is None
