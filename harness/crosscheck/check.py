@@ -25,6 +25,7 @@ from .seed import fresh_seed
 from .skeleton import (
     CLOSED_NUMBERS,
     derivation_items,
+    has_closed_forms,
     length_of,
     operations_of,
     predicted_size,
@@ -96,11 +97,13 @@ class _Check:
     def _checked(self, derived: Derivation) -> CheckedDerivation:
         system = described_system(self._premises.system, derived.effects)
         independent = system.without(derived.redundant)
+        size = predicted_size(self._premises.system, derived, independent, self._limit)
         return CheckedDerivation(
             IndependentEquations(system),
             IndependentEquations(independent, derived.mass_matrix == "supported"),
             tuple(derived.equations),
-            predicted_size(self._premises.system, derived, independent, self._limit),
+            size,
+            has_closed_forms(derived, size, self._limit),
             len(system.coordinates) ** 2 <= self._limit,
         )
 
@@ -113,7 +116,7 @@ class _Check:
     def _on_derivation(
         self, place: Place, derived: Derivation, checked: CheckedDerivation
     ) -> Iterator[EquationVerdict]:
-        closed = checked.size <= self._limit
+        closed = checked.closed
         items = derivation_items(closed, derived.mass_matrix == "regular", derived.redundant, checked.all_entries)
         yield from self._on_equations(place, derived, items, checked, derivation.COMPARISONS)
         from . import lagranges_method  # loads SymPy's mechanics, which nothing else of this package needs
@@ -150,8 +153,8 @@ class _Check:
             yield verdict_on(place, item, found)
 
     def _on_scene(self, place: Place, checked: CheckedScene) -> Iterator[EquationVerdict]:
-        size = checked.derivation.size
-        closed, law = size <= self._limit, bool(checked.premises.control_law)
+        size, closed = checked.derivation.size, checked.derivation.closed
+        law = bool(checked.premises.control_law)
         if closed:
             accelerations = [each for each in checked.derivation.equations if each.id == "accelerations"]
             size = length_of(accelerations[0]) if accelerations else 0

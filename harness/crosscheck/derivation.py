@@ -41,6 +41,7 @@ class CheckedDerivation:
     known: IndependentEquations  # of its independent constraints: what is solved
     equations: tuple[Equation, ...]
     size: int = 0  # predicted, of the closed forms
+    closed: bool = True  # whether these belong in the record
     all_entries: bool = True  # whether (3a) holds all entries of A, its zeros among them
 
     @property

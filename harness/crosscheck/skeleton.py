@@ -20,6 +20,7 @@ from .displayed import displayed, operations, roots, size
 from .report import Item
 from .system import MechanicalSystem, gradient
 
+LARGEST_TRIED_SIZE = 10000  # up to which closed forms may be there beyond the limit, as Maxima's largest_tried_size
 CLOSED_NUMBERS = ("4", "5", "8", "9", "10", "11")
 """Numbers of the equations that are left out where closed forms would be too long."""
 
@@ -155,6 +156,29 @@ def predicted_size(system: System, derived: Derivation, known: MechanicalSystem,
     if alone > limit or derived.mass_matrix == "regular":
         return min(alone, LARGEST_SIZE)
     return min(length * factorial(_largest_block(known, True)), LARGEST_SIZE)
+
+
+def has_closed_forms(derived: Derivation, predicted: float, limit: int) -> bool:
+    """Return True if closed forms belong in a derivation.
+
+    They do if their predicted size is within the limit. If it is not, they may, and (11) must be within it.
+
+    Parameters
+    ----------
+    derived : Derivation
+        Derivation of the record.
+    predicted : float
+        Predicted size.
+    limit : int
+        Limit of closed forms.
+
+    Returns
+    -------
+    bool
+    """
+    if predicted <= limit or derived.left_out is not None or predicted > LARGEST_TRIED_SIZE:
+        return predicted <= limit
+    return all(length_of(each) <= limit for each in derived.equations if each.id == "accelerations")
 
 
 def _called(parts: Iterable, effects: Sequence[str]) -> list:

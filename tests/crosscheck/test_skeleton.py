@@ -216,3 +216,23 @@ def test_what_is_wrong_disagrees_and_says_where(every_term_record, every_term_de
     found = check_record(false, every_term_description).verdicts[0]
     assert found.verdict is Verdict.DISAGREES
     assert found.detail.startswith("constraint 1: ")
+
+
+HELIX = """
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, z, s], parameters = [m, g, R, p],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2 + dot(z)^2)/2, potential_energy = m*g*z,
+  constraints = [x - R*cos(s/sqrt(R^2 + p^2)), y - R*sin(s/sqrt(R^2 + p^2)), z - p*s/sqrt(R^2 + p^2)])$
+"""
+
+
+def test_closed_forms_that_come_out_readable_belong_there(write_scene):
+    source, strict = Source(write_scene(HELIX)), {"closed_form_size": "100"}
+    record, without = derived_record(source), derived_record(source, strict)
+    assert without.derivations[0].left_out.size > source.description().closed_form_size
+    assert record.derivations[0].left_out is None
+    assert not disagreeing(record, source.description())
+    assert not disagreeing(without, source.description(strict))
+    assert {"left_out", "accelerations"} <= disagreeing(record, source.description(strict))
+    absent = with_derivation(without, left_out=None)
+    assert "accelerations" in disagreeing(absent, source.description(strict))
