@@ -18,7 +18,7 @@ from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
 from holonom.crosscheck.points import random_point
-from holonom.crosscheck.premises import differences, premises_of
+from holonom.crosscheck.premises import Premises, differences
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.failures import ErrorKind, HolonomError
@@ -246,7 +246,7 @@ def test_check_finds_a_program_with_other_switches(write_scene):
     ]
     assert verdicts[0] == {Verdict.AGREES}
     assert Verdict.DISAGREES in verdicts[1]
-    assert any(each.what == "effects" for each in differences(derived_record(file), premises_of(other)))
+    assert any(each.what == "effects" for each in differences(derived_record(file), Premises(other)))
 
 
 def test_a_scene_that_calls_for_less_pays_less():
