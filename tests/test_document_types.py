@@ -27,7 +27,7 @@ READ = {
     "record": (Record, (), ""),
     "model": (Model, (), "system source"),
     "effects": (Costs, (), ""),
-    "program": (Program, (), "outputs"),
+    "program": (Program, (), "outputs operations"),
     "motion-problem": (MotionProblem, (), "system source joints joint_shapes start drawing origins _compiled"),
     "linearization": (LinearEquations, (), "scene system title"),
     "free-motion": (FreeMotion, (), "premises check control_law effects parameter_values system time_span"),

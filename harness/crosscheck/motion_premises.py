@@ -11,9 +11,10 @@ from fractions import Fraction
 
 from mpmath import mp
 
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Name, Program
 from ..program.request import Solve
+from ..program.rewriting import computing
 from .compared_values import Parts, differing
 from .described_motion import DescribedMotion
 from .digits import WORKING_DIGITS

@@ -9,7 +9,6 @@ from fractions import Fraction
 from functools import partial
 
 from .arithmetic import Arithmetic, run_program
-from .folding import ONE, ZERO, folded
 from .motion_program import (
     CALLED,
     Atom,
@@ -19,9 +18,9 @@ from .motion_program import (
     Name,
     Operation,
     Program,
-    count_operations,
     expression_of,
 )
+from .rewriting import ONE, ZERO, folded
 
 Seeds = Mapping[str, Mapping[str, Atom]]
 TWO = Fraction(2)
@@ -72,13 +71,12 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
         for output, dual in found.items()
         for direction in directions
     }
-    new = replace(
+    return replace(
         program,
         inputs=tuple(dict.fromkeys((*program.inputs, *named))),
         assignments=tuple((name.text, call) for call, name in tape.known.items()),
         outputs={output: dual.value for output, dual in found.items()} | derivatives,
     )
-    return replace(new, operations=count_operations(new))
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ They come in one JSON document (`maxima/record/motion_problem.mac`). The outputs
 `maxima/program/motion_problem.mac`.
 """
 
-from collections.abc import Callable, Collection, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
@@ -19,7 +19,7 @@ from ..language import Message, translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
 from ..structs import structured
-from .motion_program import Program, count_operations, names_in
+from .motion_program import Program
 from .request import Request
 from .table import Table
 
@@ -432,30 +432,3 @@ def _problem(document: Mapping[str, Any]) -> MotionProblem:
     from .drawing import Drawing
 
     return replace(problem, drawing=structured(Drawing, drawing, tables=problem.tables))
-
-
-def computing(program: Program, wanted: Collection[str]) -> Program:
-    """Return the part of a program that computes some of its outputs.
-
-    It has the same inputs.
-
-    Parameters
-    ----------
-    program : Program
-    wanted : collection of str
-        Names of the selected outputs.
-
-    Returns
-    -------
-    Program
-        Program with the assignments that these outputs need.
-    """
-    outputs = {name: value for name, value in program.outputs.items() if name in wanted}
-    needed = set().union(*map(names_in, outputs.values()))
-    assignments = []
-    for name, expression in reversed(program.assignments):
-        if name in needed:
-            assignments.append((name, expression))
-            needed |= names_in(expression)
-    part = replace(program, outputs=outputs, assignments=tuple(reversed(assignments)))
-    return replace(part, operations=count_operations(part))

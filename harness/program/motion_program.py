@@ -86,13 +86,17 @@ class Program:
     scene: str | None  # name of the scene it was written for; None for a system alone
     solve: Solve
     method: str  # which factorisation the solve uses, for example ``bordered`` or ``schur``
-    operations: int  # what it costs, as Maxima counted
     inputs: tuple[str, ...]
     assignments: tuple[tuple[str, Expression], ...]  # in the order in which they can be computed
     outputs: Mapping[str, Atom]
     # multipliers that were put to zero, for their constraints follow from the others near the initial state:
     # accelerations and constraint forces are unique, multipliers are not
     redundant: tuple[str, ...] = ()
+
+    @property
+    def operations(self) -> int:
+        """Number of operations, by the rule of `operations_in`."""
+        return sum(operations_in(expression) for _, expression in self.assignments)
 
     @staticmethod
     def of_document(document: Any) -> "Program":
@@ -144,25 +148,10 @@ def _checked(document: Mapping[str, Any]) -> Program:
     return program
 
 
-def count_operations(program: Program) -> int:
-    """Count the operations of a program.
+def operations_in(expression: Expression) -> int:
+    """Count the operations in one expression.
 
     Every +, -, multiplication, division, power, root and function call counts one: a sum or product of k terms k - 1.
-    The count does not depend on the numbers in the program.
-
-    Parameters
-    ----------
-    program : Program
-
-    Returns
-    -------
-    int
-    """
-    return sum(operations_in(expression) for _, expression in program.assignments)
-
-
-def operations_in(expression: Expression) -> int:
-    """Count the operations in one expression, by the rule of `count_operations`.
 
     Parameters
     ----------

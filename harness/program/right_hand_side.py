@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..failures import ErrorKind, HolonomError
-from .motion_problem import MotionProblem, computing, require_analytic
+from .motion_problem import MotionProblem, require_analytic
 from .numpy_function import NumpyFunction
+from .rewriting import computing
 
 
 @dataclass(frozen=True, repr=False)

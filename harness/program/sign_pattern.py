@@ -5,15 +5,15 @@ they stay the same, the motion is analytic, and its problem has the signs put in
 on its switching surface is the value -drive(0)/grip along the motion.
 """
 
-from collections.abc import Callable, Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
 from .drawing import Drawing
-from .folding import ZERO, folded
-from .motion_problem import DependsOn, MotionProblem, computing
-from .motion_program import Call, Constant, Expression, Name, Operation, Program, count_operations
+from .motion_problem import DependsOn, MotionProblem
+from .motion_program import Call, Name, Operation, Program
+from .rewriting import ZERO, computing, preceded, untaken, with_names_for_numbers, with_numbers
 
 SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
 Pattern = Mapping[str, int | str]
@@ -64,7 +64,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     """
     for name, sign in pattern.items():
         if sign == SLIDING:
-            program = _preceded(_holding(problem, name), program)
+            program = preceded(_holding(problem, name), program)
     return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != SLIDING})
 
 
@@ -90,7 +90,7 @@ def drawing_at_any_time(problem: MotionProblem) -> Drawing:
             program = with_numbers(program, {sign.name: Fraction(1)})  # no drawing contains it
             continue
         assignments = (*function.assignments, (sign.name, value))
-        program = _preceded(replace(function, assignments=assignments, outputs={sign.name: Name(sign.name)}), program)
+        program = preceded(replace(function, assignments=assignments, outputs={sign.name: Name(sign.name)}), program)
     return replace(problem.drawing, program=program)
 
 
@@ -294,14 +294,14 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
     laws = {
         dots.format(name) for name in assigned if f"dot({name})" in assigned for dots in ("{}", "dot({})", "ddot({})")
     }
-    symbols = _untaken("piece", {symbol.rstrip("0123456789") for symbol in {*assigned, *problem.matrices.inputs}})
+    symbols = untaken("piece", {symbol.rstrip("0123456789") for symbol in {*assigned, *problem.matrices.inputs}})
 
     def opened(program: Program) -> Program:
         assignments = []
         for name, expression in program.assignments:
             if name in laws:
-                start = f"{symbols}_{sorted(laws).index(name)}_"
-                expression = _with_names_for_numbers(expression, start, numbers)
+                expression, named = with_names_for_numbers(expression, f"{symbols}_{sorted(laws).index(name)}_")
+                numbers.update(named)
             assignments.append((name, expression))
         return replace(program, assignments=tuple(assignments))
 
@@ -313,30 +313,6 @@ def sharing_programs(problem: MotionProblem, known: dict[Hashable, MotionProblem
     shared = replace(shared, parameters=(*problem.parameters, *numbers), values={**problem.values, **numbers})
     template = known.setdefault(_text(shared), shared)
     return replace(template, values=shared.values, start=shared.start, nominal=shared.nominal)
-
-
-def _with_names_for_numbers(expression: Expression, start: str, numbers: dict[str, Fraction]) -> Expression:
-    """Return the expression with a name for each of its numbers, exponents apart.
-
-    The numbers are put under these names.
-    """
-    count = 0
-
-    def named(part: Expression) -> Expression:
-        nonlocal count
-        match part:
-            case Fraction():
-                name, count = f"{start}{count}", count + 1
-                numbers[name] = part
-                return Name(name)
-            case Call(Operation.POWER, (base, exponent)):
-                return Call(Operation.POWER, (named(base), exponent))
-            case Call(operation, arguments):
-                return Call(operation, tuple(map(named, arguments)))
-            case _:
-                return part
-
-    return named(expression)
 
 
 def _text(problem: MotionProblem) -> Hashable:
@@ -369,36 +345,6 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
     return program_in(problem, computing(problem.switching, {f"{quantity}[{_index(problem, name)}]"}), pattern)
 
 
-def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
-    """Return a program with numbers for some of its inputs, without zero products.
-
-    Parameters
-    ----------
-    program : Program
-    numbers : mapping of str to Fraction
-        Values of inputs, by name.
-
-    Returns
-    -------
-    Program
-        Program without these inputs.
-    """
-    known: dict[str, Expression] = dict(numbers)
-    assignments = []
-    for name, expression in program.assignments:
-        value = _substituted(expression, known)
-        assignments.append((name, value))
-        if isinstance(value, Fraction | Name | Constant):
-            known[name] = value
-    part = replace(
-        program,
-        inputs=tuple(name for name in program.inputs if name not in numbers),
-        assignments=tuple(assignments),
-        outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
-    )
-    return computing(part, part.outputs)
-
-
 def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:
     """Return the motion with its programs changed, except the switching program."""
     return replace(
@@ -428,59 +374,3 @@ def _holding(problem: MotionProblem, name: str) -> Program:
         Call(Operation.NEGATE, (program.outputs[f"drive[{index}]"],)), program.outputs[f"grip[{index}]"],
     ))  # fmt: skip
     return replace(program, assignments=(*program.assignments, (name, value)), outputs={name: Name(name)})
-
-
-def _preceded(first: Program, program: Program) -> Program:
-    """Return a program after another one that computes one of its inputs.
-
-    Both take the same inputs otherwise.
-    """
-    (sign,) = first.outputs
-    taken = {name for name, _ in program.assignments} | set(program.inputs)
-    own = {name: _untaken(f"{sign}_{name}", taken) for name, _ in first.assignments if name != sign}
-    names: dict[str, Expression] = {name: Name(renamed) for name, renamed in own.items()}
-    before = tuple((own.get(name, name), _substituted(value, names)) for name, value in first.assignments)
-    joined = replace(
-        program,
-        inputs=tuple(name for name in program.inputs if name != sign),
-        assignments=(*before, *program.assignments),
-    )
-    return replace(joined, operations=count_operations(joined))
-
-
-def _untaken(name: str, taken: set[str]) -> str:
-    return _untaken(f"{name}_", taken) if name in taken else name
-
-
-def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Expression:
-    match expression:
-        case Name(text):
-            return known.get(text, expression)
-        case Call(Operation.MULTIPLY, arguments) if _vanishing_weight(arguments, known):
-            return ZERO
-        case Call(operation, arguments) if any(name in known for name in _names_met(expression)):
-            return folded(operation, [_substituted(argument, known) for argument in arguments])
-        case _:
-            return expression
-
-
-def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
-    """Return True if a factor made of signs alone is zero.
-
-    It removes all terms but one of a law in many parts.
-    """
-    for each in arguments:
-        of_signs = isinstance(each, Call) and all(name in known for name in _names_met(each))
-        if of_signs and _substituted(each, known) == ZERO:
-            return True
-    return False
-
-
-def _names_met(expression: Expression) -> Iterator[str]:
-    """Yield the names in an expression lazily."""
-    match expression:
-        case Name(text):
-            yield text
-        case Call(_, arguments):
-            for argument in arguments:
-                yield from _names_met(argument)

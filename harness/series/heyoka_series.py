@@ -25,7 +25,7 @@ from ..program.motion_problem import MotionProblem, motion_problem, require_expa
 from ..program.motion_program import Program
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
 from ..program.request import Request
-from ..program.sign_pattern import with_numbers
+from ..program.rewriting import with_numbers
 from ..sandbox import Limits
 from ..source import Source
 from .power_series import Continuation, MotionSeries, NumberTexts

@@ -18,7 +18,6 @@ import numpy as np
 
 from ..language import translatable
 from ..program.arithmetic import ELEMENTARY, Arithmetic, run_program
-from ..program.motion_problem import computing
 from ..program.motion_program import (
     Call,
     Constant,
@@ -30,6 +29,7 @@ from ..program.motion_program import (
     names_in,
     names_used,
 )
+from ..program.rewriting import computing
 from .radius import COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for

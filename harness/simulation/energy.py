@@ -14,9 +14,10 @@ import mpmath
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in, names_used
 from ..program.precision import Precision, read_precision
+from ..program.rewriting import computing
 from .accuracy_check import may_hide
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once, zeros

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.motion_problem import DependsOn, MotionProblem, Origin, computing
+from ..program.motion_problem import DependsOn, MotionProblem, Origin
+from ..program.rewriting import computing
 from ..program.sign_pattern import at_start, problem_in
 from .evaluation import Numbers, batch_evaluation
 from .inputs import Inputs

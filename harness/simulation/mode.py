@@ -9,9 +9,10 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.motion_problem import DependsOn, MotionProblem, computing
+from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
+from ..program.rewriting import computing
 from ..program.sign_pattern import (
     SLIDING,
     Pattern,

@@ -18,9 +18,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
+from ..program.rewriting import computing
 from ..program.sign_pattern import program_in
 from .evaluation import Numbers, as_floats
 from .inputs import Inputs

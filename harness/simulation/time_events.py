@@ -11,8 +11,9 @@ from operator import add
 from typing import NamedTuple
 
 from ..program.arithmetic import Arithmetic, run_program
-from ..program.motion_problem import DependsOn, MotionProblem, computing
+from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Constant, Operation, Program, names_in
+from ..program.rewriting import computing
 from ..program.sign_pattern import program_with_values
 
 

@@ -12,10 +12,10 @@ from math import floor, log10
 import numpy as np
 
 from ..program.differentiation import Seeds, along, derivative_name, differentiated
-from ..program.folding import ONE
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import read_precision
+from ..program.rewriting import ONE, computing
 from .evaluation import Evaluation, Numbers, evaluation
 from .inputs import Inputs
 

@@ -15,8 +15,9 @@ from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import along, derivative_name, differentiated
 from ..program.heyoka_function import heyoka_expressions, import_heyoka
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Name, Program
+from ..program.rewriting import computing
 from .constraints.factorization import factored_constraints
 from .constraints.stabilization import Equations
 from .evaluation import Numbers

@@ -27,9 +27,10 @@ import scipy.linalg
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.drawing import Drawing
-from ..program.motion_problem import MotionProblem, computing, require_analytic
+from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.motion_program import names_used
 from ..program.numpy_function import NumpyFunction
+from ..program.rewriting import computing
 from ..program.sign_pattern import drawing_with_values
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one

@@ -30,8 +30,8 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing, ring
 
 from ..program.arithmetic import Arithmetic, run_program
-from ..program.motion_problem import computing
 from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_of
+from ..program.rewriting import computing
 from .linear_equations import LinearEquations
 
 UNKNOWNS = 10  # larger systems are not tried

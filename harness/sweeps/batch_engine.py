@@ -18,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..program.heyoka_function import dynamics, import_heyoka, zero_multipliers
-from ..program.motion_problem import MotionProblem, computing
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Expression, Name
+from ..program.rewriting import computing
 from ..simulation.constraints.program_projection import distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
 from ..simulation.evaluation import batch_evaluation

@@ -117,7 +117,6 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
         solve=None,
         method="composed",
         redundant=(),
-        operations=0,
         inputs=tuple(sorted(set().union(*map(names_in, quantities)))),
         assignments=tuple(named.items()),
         outputs={name: Name(name) for name in named},

@@ -18,9 +18,10 @@ from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
-from ..program.motion_problem import MotionProblem, computing, require_analytic
+from ..program.motion_problem import MotionProblem, require_analytic
 from ..program.motion_program import Expression, Name, Operation, Program, calls_of, names_in
 from ..program.precision import read_precision
+from ..program.rewriting import computing
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, names_in
-from ..program.sign_pattern import with_numbers
+from ..program.rewriting import with_numbers
 from ..simulation.constraints.singularity import zeros_of_controls
 from ..simulation.initial_state import with_values
 from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence

@@ -17,7 +17,7 @@ from charged import charged
 from holonom.mathjson import from_sympy
 from holonom.maxima import run_batch
 from holonom.program.forms import MotionProgram
-from holonom.program.motion_program import Program, count_operations, read_program
+from holonom.program.motion_program import Program, read_program
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 
@@ -224,5 +224,4 @@ def _program(method: str, links: int, assignments: Sequence[list]) -> Program:
         "assignments": assignments,
         "outputs": {name: f"out{index}" for index, name in enumerate(chain.outputs(links))},
     }
-    operations = count_operations(read_program(json.dumps(document)))
-    return read_program(json.dumps(document | {"operations": operations}))
+    return read_program(json.dumps(document))

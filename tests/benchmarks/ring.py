@@ -23,7 +23,7 @@ from peers import instructions
 from timing import program_of_command, write_report
 
 from holonom.program.c_function import compile_c
-from holonom.program.motion_program import Program, count_operations, read_program
+from holonom.program.motion_program import Program, read_program
 from holonom.program.timing import Timer, shortest_times
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "ring.mac"
@@ -52,7 +52,7 @@ def measured(bodies: int) -> Row:
     seconds, ours = our_program(EXAMPLE, bodies)
     theirs_seconds, theirs = casadi_program(joints_of_ring, bodies, ours)
     times = (None, None) if bodies > LARGEST_COMPILED else evaluations(ours, theirs)
-    return Row(bodies, seconds, count_operations(ours), theirs_seconds, count_operations(theirs), *times)
+    return Row(bodies, seconds, ours.operations, theirs_seconds, theirs.operations, *times)
 
 
 def our_program(scene: Path, bodies: int) -> tuple[float, Program]:

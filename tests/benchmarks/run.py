@@ -25,7 +25,7 @@ from timing import TooLong, many_points, time_limit
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.c_function import CFunction, compile_c, load_c
 from holonom.program.heyoka_function import heyoka_function
-from holonom.program.motion_program import Program, count_operations
+from holonom.program.motion_program import Program
 from holonom.program.timing import Timer
 
 LINKS = (1, 2, 4, 8, 16, 32, 64)
@@ -97,7 +97,7 @@ def compiled_rows(
     method: str, links: int, program: Program, derive: float, points: NDArray[np.float64], timer: Timer
 ) -> Iterator[Row]:
     """Rows of a program: compiled by the C compiler, and ours by heyoka too."""
-    row, operations = partial(Row, method, links, derive), count_operations(program)
+    row, operations = partial(Row, method, links, derive), program.operations
     if operations > LARGEST_COMPILED:
         yield row(None, operations)
         return

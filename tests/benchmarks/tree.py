@@ -14,8 +14,6 @@ from pathlib import Path
 from ring import casadi_program, evaluations, our_program
 from timing import write_report
 
-from holonom.program.motion_program import count_operations
-
 SCENE = Path(__file__).with_name("tree.mac")
 BODIES = (16, 32, 64, 128, 256)
 OPERATIONS, SECONDS, GROWTH = 1.0, 5.0, 1.1  # bars, the first two in terms of CasADi's
@@ -38,7 +36,7 @@ def measured(bodies: int) -> Row:
     casadi_seconds, theirs = casadi_program(joints_of_tree, bodies, ours)
     if bodies == BODIES[0]:
         evaluations(ours, theirs)  # which ends where their accelerations differ
-    return Row(bodies, seconds, count_operations(ours), casadi_seconds, count_operations(theirs))
+    return Row(bodies, seconds, ours.operations, casadi_seconds, theirs.operations)
 
 
 def joints_of_tree(placed: list) -> list:

@@ -31,7 +31,7 @@ EXPONENTS = [2, 3, 5, -1, -2, HALF, ["Rational", -1, 2], ["Rational", 3, 2], "Pi
 
 
 def document(
-    inputs: Sequence[str], assignments: Sequence[tuple[str, Tree]], outputs: Mapping[str, Tree], operations: int = 0
+    inputs: Sequence[str], assignments: Sequence[tuple[str, Tree]], outputs: Mapping[str, Tree]
 ) -> dict[str, Any]:
     """A program's document, as Maxima would write it."""
     return {
@@ -41,18 +41,16 @@ def document(
         "solve": "direct",
         "method": "bordered",
         "redundant": [],
-        "operations": operations,
+        "operations": 0,
         "inputs": list(inputs),
         "assignments": [list(assignment) for assignment in assignments],
         "outputs": dict(outputs),
     }
 
 
-def program(
-    inputs: Sequence[str], assignments: Sequence[tuple[str, Tree]], outputs: Mapping[str, Tree], operations: int = 0
-) -> Program:
+def program(inputs: Sequence[str], assignments: Sequence[tuple[str, Tree]], outputs: Mapping[str, Tree]) -> Program:
     """A program, read from its document."""
-    return read_program(json.dumps(document(inputs, assignments, outputs, operations)))
+    return read_program(json.dumps(document(inputs, assignments, outputs)))
 
 
 PENDULUM = program(
@@ -65,7 +63,6 @@ PENDULUM = program(
         ("w5", ["Subtract", ["Multiply", "w3", "y"], "g"]),
     ],
     {"ddot(x)": "w4", "ddot(y)": "w5", "lambda1": "w3"},
-    operations=12,
 )
 """A unit mass on a rod, f = (x^2 + y^2 - l^2)/2: ddot(r) = -g e_y + lambda r."""
 

@@ -5,9 +5,10 @@ from pathlib import Path
 import pytest
 from refusing import refused
 
-from holonom.program.motion_problem import MotionProblem, computing, motion_problem
+from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.program.rewriting import computing
 from holonom.sandbox import Limits
 
 PAPER = Path(__file__).parents[2] / "examples" / "paper" / "paper.mac"

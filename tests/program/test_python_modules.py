@@ -23,11 +23,11 @@ from reference import assert_within_bounds, reference
 
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.differentiation import differentiated
-from holonom.program.folding import ONE
 from holonom.program.forms import MotionProgram
 from holonom.program.model import scene_model
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
+from holonom.program.rewriting import ONE
 from holonom.program.targets import MODULES, python_casadi, python_jax, python_numpy
 from holonom.sandbox import Limits
 

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 from holonom.program.motion_problem import DependsOn, MotionProblem
-from holonom.program.motion_program import Call, Expression, Name, Operation, Program, count_operations, names_in
+from holonom.program.motion_program import Call, Expression, Name, Operation, Program, names_in
 from holonom.simulation.matrices import INDEXED
 
 PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "servo_matrix", "events", "switching"
@@ -126,8 +126,7 @@ def _changed(program: Program, of_inputs: dict[str, Fraction], of_output: Callab
     for name, value in program.outputs.items():
         after.append((f"{name} in its unit", Call(Operation.MULTIPLY, (of_output(name), _renamed(value, named)))))
         outputs[name] = Name(after[-1][0])
-    part = replace(program, assignments=(*before, *inner, *after), outputs=outputs)
-    return replace(part, operations=count_operations(part))
+    return replace(program, assignments=(*before, *inner, *after), outputs=outputs)
 
 
 def _renamed(expression: Expression, names: dict[str, str]) -> Expression:

@@ -12,8 +12,9 @@ Griewank & Walther, Evaluating Derivatives, section 13.2.
 from collections.abc import Set
 from fractions import Fraction
 
-from ...program.motion_problem import MotionProblem, computing
+from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Call, Constant, Expression, Name, Operation, Program
+from ...program.rewriting import computing
 
 PAIRED = frozenset({Operation.SIN, Operation.COS, Operation.SINH, Operation.COSH, Operation.TAN, Operation.TANH})
 LINEAR = frozenset({Operation.ADD, Operation.SUBTRACT, Operation.NEGATE, Operation.ABS, Operation.SIGN})

@@ -26,8 +26,8 @@ from ..c_source import (
 )
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
-from ..motion_problem import computing
 from ..motion_program import Program
+from ..rewriting import computing
 from ..templates import filled, template
 
 GIVEN = "double t, const double *q, const double *v, const double *u, const double *p"

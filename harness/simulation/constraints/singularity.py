@@ -17,8 +17,9 @@ import numpy as np
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from ...program.motion_problem import MotionProblem, computing
+from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Name
+from ...program.rewriting import computing
 from ...program.sign_pattern import program_with_values
 from ...program.table_numbers import TimeFunction
 from ..evaluation import Numbers, as_floats

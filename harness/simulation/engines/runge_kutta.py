@@ -23,9 +23,10 @@ from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.c_function import has_compiler, load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
-from ...program.motion_problem import MotionProblem, computing
+from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Program
 from ...program.precision import read_precision
+from ...program.rewriting import computing
 from ...program.sign_pattern import with_values_in
 from ..inputs import named_inputs
 from ..matrices import MotionMatrices

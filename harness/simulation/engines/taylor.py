@@ -17,8 +17,9 @@ from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.expense import HIGH_ORDER, order_for, require_means
 from ...program.heyoka_function import import_heyoka
-from ...program.motion_problem import MotionProblem, computing
+from ...program.motion_problem import MotionProblem
 from ...program.precision import GUARD_DIGITS, Precision, read_precision
+from ...program.rewriting import computing
 from ...program.sign_pattern import at_start
 from ..constraints.program_projection import ProgramProjection
 from ..constraints.stabilization import equations_of_motion, stabilized_equations

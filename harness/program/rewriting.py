@@ -1,0 +1,218 @@
+"""Programs made of others: parts, compositions, numbers in place of names.
+
+Operations on numbers are done when the program is written.
+"""
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+from .motion_program import Call, Constant, Expression, Name, Operation, Program, names_in
+
+ZERO, ONE = Fraction(0), Fraction(1)
+
+
+def folded(operation: Operation, arguments: list[Expression]) -> Expression:
+    """Return the operation on its arguments, evaluated if all are numbers.
+
+    Parameters
+    ----------
+    operation : Operation
+    arguments : list of Expression
+        Arguments, themselves folded.
+
+    Returns
+    -------
+    Expression
+        A number, an argument, or the call.
+    """
+    match operation, arguments:
+        case Operation.ADD, _:
+            return _collected(operation, arguments, ZERO)
+        case Operation.MULTIPLY, _:
+            return ZERO if ZERO in arguments else _collected(operation, arguments, ONE)
+        case Operation.NEGATE, [Fraction() as a]:
+            return -a
+        case Operation.SUBTRACT, [Fraction() as a, Fraction() as b]:
+            return a - b
+        case Operation.SUBTRACT, [a, Fraction(numerator=0)]:
+            return a
+        case Operation.SUBTRACT, [Fraction(numerator=0), b]:
+            return Call(Operation.NEGATE, (b,))
+        case Operation.DIVIDE, [Fraction() as a, Fraction() as b] if b:
+            return a / b
+        case Operation.DIVIDE, [Fraction(numerator=0), _]:
+            return ZERO
+        case Operation.POWER, [Fraction() as a, Fraction(denominator=1) as n] if a or n >= 0:
+            return a ** int(n)
+        case _:
+            return Call(operation, tuple(arguments))
+
+
+def _collected(operation: Operation, arguments: list[Expression], neutral: Fraction) -> Expression:
+    """Return a sum or product with its numbers taken together."""
+    number, rest = neutral, []
+    for argument in arguments:
+        if isinstance(argument, Fraction):
+            number = number + argument if operation is Operation.ADD else number * argument
+        else:
+            rest.append(argument)
+    if not rest:
+        return number
+    parts = rest if number == neutral else [number, *rest]
+    return parts[0] if len(parts) == 1 else Call(operation, tuple(parts))
+
+
+def computing(program: Program, wanted: Collection[str]) -> Program:
+    """Return the part of a program that computes some of its outputs.
+
+    It has the same inputs.
+
+    Parameters
+    ----------
+    program : Program
+    wanted : collection of str
+        Names of the selected outputs.
+
+    Returns
+    -------
+    Program
+        Program with the assignments that these outputs need.
+    """
+    outputs = {name: value for name, value in program.outputs.items() if name in wanted}
+    needed = set().union(*map(names_in, outputs.values()))
+    assignments = []
+    for name, expression in reversed(program.assignments):
+        if name in needed:
+            assignments.append((name, expression))
+            needed |= names_in(expression)
+    return replace(program, outputs=outputs, assignments=tuple(reversed(assignments)))
+
+
+def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
+    """Return a program with numbers for some of its inputs, without zero products.
+
+    Parameters
+    ----------
+    program : Program
+    numbers : mapping of str to Fraction
+        Values of inputs, by name.
+
+    Returns
+    -------
+    Program
+        Program without these inputs.
+    """
+    known: dict[str, Expression] = dict(numbers)
+    assignments = []
+    for name, expression in program.assignments:
+        value = _substituted(expression, known)
+        assignments.append((name, value))
+        if isinstance(value, Fraction | Name | Constant):
+            known[name] = value
+    part = replace(
+        program,
+        inputs=tuple(name for name in program.inputs if name not in numbers),
+        assignments=tuple(assignments),
+        outputs={name: _substituted(value, known) for name, value in program.outputs.items()},
+    )
+    return computing(part, part.outputs)
+
+
+def with_names_for_numbers(expression: Expression, start: str) -> tuple[Expression, dict[str, Fraction]]:
+    """Return an expression with a name for each of its numbers, exponents apart.
+
+    Parameters
+    ----------
+    expression : Expression
+    start : str
+        Start of the names. They end with 0, 1, ...
+
+    Returns
+    -------
+    (Expression, dict of str to Fraction)
+        The expression, and the numbers by name.
+    """
+    numbers: dict[str, Fraction] = {}
+
+    def named(part: Expression) -> Expression:
+        match part:
+            case Fraction():
+                name = f"{start}{len(numbers)}"
+                numbers[name] = part
+                return Name(name)
+            case Call(Operation.POWER, (base, exponent)):
+                return Call(Operation.POWER, (named(base), exponent))
+            case Call(operation, arguments):
+                return Call(operation, tuple(map(named, arguments)))
+            case _:
+                return part
+
+    return named(expression), numbers
+
+
+def preceded(first: Program, program: Program) -> Program:
+    """Return a program after another one that computes one of its inputs.
+
+    Both take the same inputs otherwise.
+
+    Parameters
+    ----------
+    first : Program
+        Program with one output, which has the name of the input.
+    program : Program
+
+    Returns
+    -------
+    Program
+        Program without this input.
+    """
+    (computed,) = first.outputs
+    taken = {name for name, _ in program.assignments} | set(program.inputs)
+    own = {name: untaken(f"{computed}_{name}", taken) for name, _ in first.assignments if name != computed}
+    names: dict[str, Expression] = {name: Name(renamed) for name, renamed in own.items()}
+    before = tuple((own.get(name, name), _substituted(value, names)) for name, value in first.assignments)
+    return replace(
+        program,
+        inputs=tuple(name for name in program.inputs if name != computed),
+        assignments=(*before, *program.assignments),
+    )
+
+
+def untaken(name: str, taken: Collection[str]) -> str:
+    """Return a name with underscores behind it until it is free.
+
+    Parameters
+    ----------
+    name : str
+    taken : collection of str
+        Names in use.
+
+    Returns
+    -------
+    str
+    """
+    return untaken(f"{name}_", taken) if name in taken else name
+
+
+def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Expression:
+    match expression:
+        case Name(text):
+            return known.get(text, expression)
+        case Call(Operation.MULTIPLY, arguments) if _vanishing_weight(arguments, known):
+            return ZERO
+        case Call(operation, arguments) if not known.keys().isdisjoint(expression.names):
+            return folded(operation, [_substituted(argument, known) for argument in arguments])
+        case _:
+            return expression
+
+
+def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
+    """Return True if a factor made of known names alone is zero.
+
+    It removes all terms but one of a law in many parts.
+    """
+    return any(
+        isinstance(each, Call) and each.names <= known.keys() and _substituted(each, known) == ZERO
+        for each in arguments
+    )
