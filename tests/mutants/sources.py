@@ -100,7 +100,7 @@ def _mirrors(path: Path) -> list[str]:
     tests = ROOT / "tests"
     package = tests.joinpath(*path.parts[1:-1][:1])
     choices = [tests / f"maxima/rtest_{path.stem}.mac", *sorted(package.rglob(f"test_{path.stem}.py"))]
-    choices += [tests / f"test_{package.name}.py"]
+    choices += [tests / f"test_{path.stem}.py", tests / f"test_{package.name}.py"]
     return [choice.relative_to(ROOT).as_posix() for choice in choices if choice.is_file()]
 
 
