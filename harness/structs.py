@@ -4,7 +4,7 @@ A document has the shape of its schema when it comes here (`holonom.formats.read
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, fields, is_dataclass
+from dataclasses import MISSING, field, fields, is_dataclass
 from functools import cache, partial
 from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args, get_origin
@@ -13,19 +13,31 @@ Struct = TypeVar("Struct")
 AS_IT_IS = (bool, int, str)
 
 
-def key(name: str) -> Any:
+def key(name: str, default: Any = MISSING) -> Any:
     """Make a field of a dataclass that has another name in the document.
 
     Parameters
     ----------
     name : str
         Name in the document.
+    default : object
+        Value of the field if the document does not have it.
 
     Returns
     -------
     dataclasses.Field
     """
-    return field(metadata={"key": name})
+    return field(default=default, metadata={"key": name})
+
+
+def group() -> Any:
+    """Make a field whose own fields are in the same object of the document.
+
+    Returns
+    -------
+    dataclasses.Field
+    """
+    return field(metadata={"key": None})
 
 
 def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> Struct:
@@ -48,16 +60,16 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
         An instance of the type.
     """
     read = {
-        name: _value(annotation, content[place])
+        name: _value(annotation, content if place is None else content[place])
         for name, place, annotation in _fields(kind)
-        if name not in given and place in content
+        if name not in given and (place is None or place in content)
     }
     return kind(**read, **given)
 
 
 @cache
-def _fields(kind: type) -> tuple[tuple[str, str, Any], ...]:
-    """Return name, key and annotation of each field."""
+def _fields(kind: type) -> tuple[tuple[str, str | None, Any], ...]:
+    """Return name, key and annotation of each field. The key of a group is None."""
     if is_dataclass(kind):
         return tuple((each.name, each.metadata.get("key", each.name), each.type) for each in fields(kind))
     return tuple((name, name, annotation) for name, annotation in kind.__annotations__.items())

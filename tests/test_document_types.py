@@ -1,7 +1,7 @@
 """Types and schemas of documents say the same: names, lists, what may be null, kinds of values."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import Enum
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin
@@ -28,7 +28,7 @@ READ = {
     "model": (Model, (), "system source"),
     "effects": (Costs, (), ""),
     "program": (Program, (), "outputs operations"),
-    "motion-problem": (MotionProblem, (), "system source joints joint_shapes start drawing origins _compiled"),
+    "motion-problem": (MotionProblem, (), "system source joints joint_shapes start drawing origins after _compiled"),
     "linearization": (LinearEquations, (), "scene system title"),
     "free-motion": (FreeMotion, (), "premises check control_law effects parameter_values system time_span"),
     "description scenes": (DescribedScene, ("scenes", 0), ""),
@@ -109,8 +109,7 @@ class Comparison:
             yield f"{path}: nothing by the schema, {kind} by the type"
 
     def _fields(self, kind: Any, found: dict, path: str) -> Iterator[str]:
-        named = {each.metadata.get("key", each.name): each for each in fields(kind)}
-        properties = found.get("properties", {})
+        named, properties = dict(_named(kind)), found.get("properties", {})
         for name in sorted((named.keys() ^ properties.keys()) - self._otherwise):
             yield f"{path}.{name}: only in the {'type' if name in named else 'schema'}"
         for name in (named.keys() & properties.keys()) - self._otherwise:
@@ -119,6 +118,13 @@ class Comparison:
             if name not in found.get("required", ()) and not given:
                 yield f"{path}.{name}: may be missing, and has no default"
             yield from self._differences(each.type, properties[name], f"{path}.{name}")
+
+
+def _named(kind: Any) -> Iterator[tuple[str, Field]]:
+    """The fields by their names in the document, those of groups among them."""
+    for each in fields(kind):
+        name = each.metadata.get("key", each.name)
+        yield from [(name, each)] if name else _named(each.type)
 
 
 def _listed(kinds: Any) -> list:

@@ -78,15 +78,15 @@ def _stated(motion: DescribedMotion, problem: MotionProblem) -> dict[str, tuple[
     events = [f"event[{i}]" for i in range(1, len(scene.until_trees) + 1)]
     return {
         "coordinates": (problem.coordinates, (*system.coordinates, *motion.freed, *motion.moved)),
-        "multipliers": (problem.multipliers[: len(problem.multipliers) - problem.servo], system.multipliers),
+        "multipliers": (problem.reactions, system.multipliers),
         "multipliers in forces": (problem.reacting, motion.reacting),
         "observe": (problem.observe, scene.observe),
         "time span": (["some"] * bool(problem.time_span), ["some"] * bool(motion.span)),
-        "events": (list(problem.events.outputs) if problem.events else [], events),
-        "until": (["one"] * len(problem.until), ["one"] * len(events)),
+        "events": (list(problem.ends.events.outputs) if problem.ends.events else [], events),
+        "until": (["one"] * len(problem.ends.until), ["one"] * len(events)),
         "outputs": (list(problem.outputs.outputs) if problem.outputs else [], list(scene.outputs)),
         "released": (
-            [name for each in problem.released for name in (*each.multipliers, "then")],
+            [name for each in problem.ends.released for name in (*each.multipliers, "then")],
             [name for each in scene.released for name in (*each.multipliers, "then")],
         ),
     }
@@ -106,7 +106,7 @@ def _compared(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Ite
     The laws are compared at the times of `law_times`.
     """
     if not motion.ended:  # the initial state is that of the motion before any release
-        yield from values_of_start(motion, _start(problem), problem.correction)
+        yield from values_of_start(motion, _start(problem), problem.initial.correction)
     for found, belongs in zip(problem.time_span or (), motion.span or (), strict=True):
         yield ComparedValue("time span", mp.mpf(found), belongs, abs(belongs))
     own = States(motion, problem, seed)
@@ -197,7 +197,7 @@ def values_of_inputs(
                     yield PREMISES, ComparedValue(name, computed[name][0], true[0], abs(true[0]))
             known = motion.parameters() | inputs | motion.with_derivatives(LAW, controls | inputs)
             known |= dict.fromkeys(motion.ended, (mp.zero,))
-            for program, conditions in zip((problem.events, problem.releases), expressions, strict=True):
+            for program, conditions in zip((problem.ends.events, problem.ends.releases), expressions, strict=True):
                 computed = {} if program is None else run(program, inputs)
                 for name, true in conditions.at(STATE, state["t"][0], known).items():
                     yield PREMISES, ComparedValue(name, computed[name][0], true[0], abs(true[0]))

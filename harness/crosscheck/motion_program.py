@@ -155,10 +155,10 @@ def _verify_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed
     """
     verdicts = _verify_problems(motion, programs, seed)
     problems = programs.problems
-    if any(len(each.released) != len(motion.scene.released) for each in problems.values()):
+    if any(len(each.ends.released) != len(motion.scene.released) for each in problems.values()):
         return verdicts
-    for k, release in enumerate(next(iter(problems.values())).released):
-        after = replace(programs, problems={solve: each.released[k].after for solve, each in problems.items()})
+    for k, release in enumerate(next(iter(problems.values())).ends.released):
+        after = replace(programs, problems={solve: each.ends.released[k].after for solve, each in problems.items()})
         verdicts += [
             replace(each, part=f"{each.part}; after {release.of} = 0")
             for each in _verify_with_releases(motion.after(k), after, seed)
@@ -223,7 +223,7 @@ def _plain_states(
         own = drawn[next(iter(problems))]
         state = own.state(attempt)
         x = own.random_numbers(attempt, len(names))
-        x[len(names) - first.servo :] = [mp.zero] * first.servo
+        x[len(names) - first.servo.constraints :] = [mp.zero] * first.servo.constraints
         if first.reacting:
             system = states.bordered(run(first.matrices, own.inputs(state, x[n:])), n, first.multipliers, redundant)
             x[n:] = system.solution(system.right)[n:]
@@ -246,7 +246,7 @@ def _plain_states(
                 for which in ("position", "velocity"):
                     found = states.values_of_projection(system, corrections, computed, which)
                     yield from ((part, value) for value in found)
-        if first.servo:
+        if first.servo.constraints:
             state = own.holding(state)
             inputs = own.inputs(state, x[n:])
             system = states.bordered(run(first.matrices, inputs), n, first.multipliers, redundant)
@@ -261,7 +261,10 @@ def _plain_states(
                 yield part, ComparedValue("a value", mp.zero, mp.one, mp.one)
                 continue
             yield from ((part, value) for value in states.values_of_law(law, found))
-            yield from ((part, each) for each in states.values_of_solve(system, solution, found, names, problem.servo))
+            yield from (
+                (part, each)
+                for each in states.values_of_solve(system, solution, found, names, problem.servo.constraints)
+            )
             yield from ((part, each) for each in states.values_of_constraint_forces(system, found, names))
 
     return compared

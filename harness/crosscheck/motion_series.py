@@ -103,7 +103,7 @@ def verify_series(
         One for each scene without servo-constraints.
     """
     scenes = {scene.name: scene for scene in description.scenes}
-    corrections = {each.scene: problem.correction for each in programs for problem in each.problems.values()}
+    corrections = {each.scene: problem.initial.correction for each in programs for problem in each.problems.values()}
     verdicts = []
     for each in found:
         if scenes[each.scene].servo_trees:

@@ -152,7 +152,7 @@ class States:
         IrregularPoint
             Newton's method does not converge.
         """
-        if not self.problem.servo:
+        if not self.problem.servo.constraints:
             return state
         names = [(q, f"dot({q})") for q in self.problem.coordinates]
         for _ in range(NEWTON_STEPS):

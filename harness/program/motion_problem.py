@@ -18,7 +18,7 @@ from ..formats import Document, read
 from ..language import Message, translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
-from ..structs import structured
+from ..structs import group, key, structured
 from .motion_program import Program
 from .request import Request
 from .table import Table
@@ -73,12 +73,47 @@ class ParametricStart:
 
 
 @dataclass(frozen=True)
+class InitialData:
+    """The origin of the initial state, which is in `MotionProblem.start`."""
+
+    # the given value whose last digits were corrected most to satisfy the constraints, and the correction
+    correction: Correction | None = None
+    # the initial value that differs most from the scene's guess, and by how much; None without a guess
+    moved: Correction | None = None
+    given: tuple[str, ...] = ()  # of the state: what the scene gives at the initial time; the rest is found
+    parametric: ParametricStart | None = key("parametric_start", None)  # None without open parameters
+
+
+@dataclass(frozen=True)
+class Servo:
+    """The servo-constraints of a motion, whose multipliers are zero."""
+
+    constraints: int = key("servo", 0)  # number of them, the last of the constraints
+    # ``servo_matrix[j,i]``: coefficient of the i-th control that they find, in the second time derivative of
+    # condition j; None without such controls
+    matrix: Program | None = key("servo_matrix", None)
+    # of each output that they prescribe: which of its time derivatives the controls are in
+    relative_degrees: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
 class Release:
     """Constraints that end at the first zero crossing of a condition."""
 
     of: str  # the condition, as Maxima prints it
     multipliers: tuple[str, ...]  # those of the constraints
     after: "MotionProblem"  # the motion without them, at the initial time of the whole
+
+
+@dataclass(frozen=True)
+class Ends:
+    """Zero crossings that end the motion, or constraints of it."""
+
+    # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
+    until: tuple[str, ...] = ()
+    events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
+    releases: Program | None = None  # ``event[i]``, the conditions of `released`, as `events`; None without any
+    released: tuple[Release, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -102,8 +137,9 @@ class MotionProblem:
     # the time, coordinates and velocities at the initial time, as decimal digits; the time alone where a parameter
     # without a value decides about the others
     start: Mapping[str, str]
-    # the given value whose last digits were corrected most to satisfy the constraints, and the correction
-    correction: Correction | None
+    initial: InitialData = group()
+    ends: Ends = group()
+    servo: Servo = group()
     obstruction: Message | None  # why no order of pivots solves the equations of motion; None where one does
     # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
     motion: Program | None
@@ -123,21 +159,7 @@ class MotionProblem:
     controls: Program | None = None
     # what the scene observes under names of its own; ``ddot(q)`` are inputs, behind the multipliers. None without any
     outputs: Program | None = None
-    # ``servo_matrix[j,i]``: coefficient of the i-th control that servo-constraints find, in the second time derivative
-    # of condition j
-    servo_matrix: Program | None = None
-    # number of servo-constraints, the last of the constraints, whose multipliers are zero
-    servo: int = 0
     reacting: tuple[str, ...] = ()  # multipliers that forces contain
-    # of each output that servo-constraints prescribe: which of its time derivatives the controls are in
-    relative_degrees: tuple[int, ...] = ()
-    # the initial value that differs most from the scene's guess, and by how much; None without a guess
-    moved: Correction | None = None
-    # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
-    until: tuple[str, ...] = ()
-    events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
-    releases: Program | None = None  # ``event[i]``, the conditions of `released`, as `events`; None without any
-    released: tuple[Release, ...] = ()
     signs: tuple[Sign, ...] = ()  # of the functions whose changes of sign switch the motion; empty where it is analytic
     # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
     # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; ``regular`` where forces contain multipliers,
@@ -147,8 +169,6 @@ class MotionProblem:
     parameters: tuple[str, ...] = ()  # those that stay open
     # their values in this motion; some may be missing if none is integrated
     values: Mapping[str, Fraction] = field(default_factory=dict)
-    parametric_start: ParametricStart | None = None  # None without open parameters
-    given: tuple[str, ...] = ()  # of the state: what the scene gives at the initial time; the rest is found
     # sizes with which quantities are compared, by name, ``t`` for the time: those that the scene gives
     nominal: Mapping[str, float] = field(default_factory=dict)
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
@@ -219,7 +239,7 @@ class MotionProblem:
     @property
     def reactions(self) -> tuple[str, ...]:
         """Names of the multipliers that are not zero by being those of servo-constraints."""
-        return self.multipliers[: len(self.multipliers) - self.servo]
+        return self.multipliers[: len(self.multipliers) - self.servo.constraints]
 
 
 def require_signs_known(problem: MotionProblem) -> None:
@@ -257,8 +277,8 @@ def require_analytic(problem: MotionProblem) -> None:
         raise HolonomError(
             ErrorKind.REACTING, problem.scene, detail=translatable("and the motion is not integrated by switching")
         )
-    if problem.released:
-        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.released[0].of)
+    if problem.ends.released:
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, problem.ends.released[0].of)
     if problem.tables:
         knot = min(table.knots[0] for table in problem.tables)
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, function_of_knot(knot))
@@ -277,7 +297,7 @@ def require_laws(problem: MotionProblem) -> None:
     HolonomError
         A control has no law.
     """
-    if problem.servo:
+    if problem.servo.constraints:
         raise HolonomError(ErrorKind.NO_LAW, problem.scene)
 
 
@@ -414,17 +434,22 @@ def read_problem(text: str, description: "Description | None" = None) -> MotionP
 def _problem(document: Mapping[str, Any]) -> MotionProblem:
     system, span, drawing = document["system"], document["time_span"], document["drawing"]
     start = document["parametric_start"]
+    released = (
+        Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
+        for each in document.get("released", ())
+    )
     problem = structured(
         MotionProblem,
         document,
         system=system["title"],
         source=system["source"],
         start=document["start"] or {"t": span[0] if span else "0"},
-        parametric_start=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
-        released=tuple(
-            Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
-            for each in document.get("released", ())
+        initial=structured(
+            InitialData,
+            document,
+            parametric=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
         ),
+        ends=structured(Ends, document, released=tuple(released)),
         drawing=None,
     )
     if drawing is None:

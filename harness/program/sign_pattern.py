@@ -9,14 +9,16 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
+from typing import Any, TypeVar
 
 from .drawing import Drawing
-from .motion_problem import DependsOn, MotionProblem
+from .motion_problem import DependsOn, Ends, MotionProblem, Servo
 from .motion_program import Call, Name, Operation, Program
 from .rewriting import ZERO, computing, preceded, untaken, with_names_for_numbers, with_numbers
 
 SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
 Pattern = Mapping[str, int | str]
+Part = TypeVar("Part", MotionProblem, Drawing, Ends, Servo)
 
 
 def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
@@ -230,15 +232,18 @@ def with_values_in(problem: MotionProblem) -> MotionProblem:
     """
     if not problem.parameters:
         return problem
+    changed = _with_programs(problem, lambda program: program_with_values(problem, program))
+    released = tuple(
+        replace(each, after=with_values_in(replace(each.after, values=problem.values)))
+        for each in problem.ends.released
+    )
     return replace(
-        _with_programs(problem, lambda program: program_with_values(problem, program)),
+        changed,
         switching=problem.switching and program_with_values(problem, problem.switching),
-        released=tuple(
-            replace(each, after=with_values_in(replace(each.after, values=problem.values))) for each in problem.released
-        ),
+        ends=replace(changed.ends, released=released),
         parameters=(),
         values={},
-        parametric_start=None,
+        initial=replace(problem.initial, parametric=None),
     )
 
 
@@ -268,7 +273,7 @@ def at_start(problem: MotionProblem) -> MotionProblem:
 
 def _begun(motion: MotionProblem, problem: MotionProblem) -> MotionProblem:
     """Return a motion that starts as another one does."""
-    shared = ("start", "values", "correction", "moved", "nominal")
+    shared = ("start", "values", "initial", "nominal")
     return replace(motion, **{name: getattr(problem, name) for name in shared})
 
 
@@ -345,21 +350,19 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
     return program_in(problem, computing(problem.switching, {f"{quantity}[{_index(problem, name)}]"}), pattern)
 
 
-def _with_programs(problem: MotionProblem, changed: Callable[[Program], Program]) -> MotionProblem:
-    """Return the motion with its programs changed, except the switching program."""
-    return replace(
-        problem,
-        motion=problem.motion and changed(problem.motion),
-        projection=problem.projection and changed(problem.projection),
-        matrices=changed(problem.matrices),
-        energy=changed(problem.energy),
-        drawing=problem.drawing and replace(problem.drawing, program=changed(problem.drawing.program)),
-        events=problem.events and changed(problem.events),
-        releases=problem.releases and changed(problem.releases),
-        controls=problem.controls and changed(problem.controls),
-        outputs=problem.outputs and changed(problem.outputs),
-        servo_matrix=problem.servo_matrix and changed(problem.servo_matrix),
-    )
+def _with_programs(part: Part, changed: Callable[[Program], Program]) -> Part:
+    """Return the motion, or a part, with programs but the switching one changed."""
+
+    def new(value: Any) -> Any:
+        match value:
+            case Program():
+                return changed(value)
+            case Drawing() | Ends() | Servo():
+                return _with_programs(value, changed)
+            case _:
+                return value
+
+    return replace(part, **{name: new(value) for name, value in vars(part).items() if name != "switching"})
 
 
 def _index(problem: MotionProblem, name: str) -> int:

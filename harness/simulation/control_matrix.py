@@ -33,13 +33,13 @@ def controls_may_fail(problem: MotionProblem) -> bool:
     -------
     bool
     """
-    if problem.servo_matrix is None:
+    if problem.servo.matrix is None:
         return False
     known = {*problem.parameters}
-    for name, expression in problem.servo_matrix.assignments:
+    for name, expression in problem.servo.matrix.assignments:
         if names_in(expression) <= known:
             known.add(name)
-    return any(not names_in(value) <= known for value in problem.servo_matrix.outputs.values())
+    return any(not names_in(value) <= known for value in problem.servo.matrix.outputs.values())
 
 
 class ControlMatrix(SignedFunctions):
@@ -55,10 +55,10 @@ class ControlMatrix(SignedFunctions):
 
     def __init__(self, problem: MotionProblem, precision: Precision, span: float) -> None:
         super().__init__(precision, span)
-        places = [INDEXED.fullmatch(name).groups()[1:] for name in problem.servo_matrix.outputs]
+        places = [INDEXED.fullmatch(name).groups()[1:] for name in problem.servo.matrix.outputs]
         self._shape = tuple(max(map(int, numbers)) for numbers in zip(*places, strict=True))
         self._inputs = Inputs(problem, precision)
-        self._evaluate = evaluation_once(problem, problem.servo_matrix, precision)
+        self._evaluate = evaluation_once(problem, problem.servo.matrix, precision)
         self._matrix_rows: Vector | None = None  # the rows whose determinant is computed along the motion
         self._scale: Numbers | float = 1.0  # of each row
 

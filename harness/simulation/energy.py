@@ -264,7 +264,7 @@ def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
 
 def _constraints_move(problem: MotionProblem) -> bool:
     """Return True if time, a control or a servo-constraint moves a constraint."""
-    if problem.servo:
+    if problem.servo.constraints:
         return True
     residuals_alone = {name for name in problem.matrices.outputs if name.startswith("residual[")}
     program = computing(problem.matrices, residuals_alone)

@@ -65,7 +65,9 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     for step in motion.integrate(end):
         if step.mode not in events:
             problem = step.mode.problem
-            events[step.mode] = Events(problem.until, values_in(step.mode, problem.events, precision), precision, span)
+            events[step.mode] = Events(
+                problem.ends.until, values_in(step.mode, problem.ends.events, precision), precision, span
+            )
         found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found

@@ -195,7 +195,7 @@ class HybridMotion:
         HolonomError
             The motion cannot be continued so far.
         """
-        if self.problem.switching or self.problem.released or controls_may_fail(self.problem):
+        if self.problem.switching or self.problem.ends.released or controls_may_fail(self.problem):
             deque(self.integrate(until), maxlen=0)
             return
         while self.time != until:
@@ -288,12 +288,12 @@ class HybridMotion:
 
     def _first_release(self, step: Step) -> Crossing | None:
         """Return the first zero crossing of a release condition within a step."""
-        released, mode = self.problem.released, step.mode
+        released, mode = self.problem.ends.released, step.mode
         if not released:
             return None
         if mode not in self._conditions:
             names = [each.of for each in released]
-            conditions = values_in(mode, mode.problem.releases, self._precision)
+            conditions = values_in(mode, mode.problem.ends.releases, self._precision)
             self._conditions[mode] = Events(names, conditions, self._precision, self._span)
         return self._conditions[mode].first_event(step, self._sides)
 
@@ -304,7 +304,7 @@ class HybridMotion:
         """
         state = step.states(np.array([crossing.t]))[:, 0]
         begun = self._started_at(crossing.t, state)
-        after = next(each.after for each in self.problem.released if each.of == crossing.name)
+        after = next(each.after for each in self.problem.ends.released if each.of == crossing.name)
         self._begin(replace(after, start=begun.start, values=begun.values, nominal=begun.nominal))
         self.mode.engine.restart(crossing.t, state)
         self.switchings.append(Switching(float(crossing.t), crossing.name, EventOutcome.JOINT_RELEASED))
@@ -436,7 +436,7 @@ class HybridMotion:
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         moved = after.settled(t, moved)
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
-        if self.problem.servo and not continuous:
+        if self.problem.servo.constraints and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))

@@ -52,7 +52,7 @@ class InitialStates:
     """
 
     def __init__(self, problem: MotionProblem) -> None:
-        start = problem.parametric_start
+        start = problem.initial.parametric
         if start.obstruction is not None:
             raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, start.obstruction)
         self._time, self._n = float(problem.start["t"]), len(problem.coordinates)
@@ -363,7 +363,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         The initial state cannot be adapted to the parameters, or not to one that is known to be the only one. There is
         none for these values.
     """
-    if Origin.CONTINUED in problem.parametric_start.origins.values():
+    if Origin.CONTINUED in problem.initial.parametric.origins.values():
         reason = translatable(
             "no closed form gives it for all values of the parameters; put near values into initial_guess"
         )
@@ -378,7 +378,8 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         )
     found = started(problem, complete, starts.states[:, 0])
     correction, moved = (told(numbers, starts.states) for told in (initial_states.correction, initial_states.moved))
-    return replace(found, correction=correction, moved=moved or problem.moved)
+    initial = replace(problem.initial, correction=correction, moved=moved or problem.initial.moved)
+    return replace(found, initial=initial)
 
 
 def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbers) -> MotionProblem:

@@ -94,7 +94,7 @@ def _data(problem: MotionProblem, directions: Sequence[str]) -> Numbers:
     for k, name in enumerate(directions):
         if name in problem.state:
             moves[problem.state.index(name), k] = 1.0
-    start = problem.parametric_start
+    start = problem.initial.parametric
     parameters = [name for name in directions if name in problem.parameters]
     if not parameters:
         return moves
@@ -116,7 +116,7 @@ def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray
     """
     n = len(problem.coordinates)
     others = [(s, name) for s, name in enumerate(problem.state[half * n :][:n]) if name != direction]
-    yield np.array([s for s, name in others if name not in problem.given], dtype=int)
+    yield np.array([s for s, name in others if name not in problem.initial.given], dtype=int)
     if direction in problem.state:
         yield np.array([s for s, _ in others], dtype=int)
 
@@ -126,7 +126,7 @@ def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64
 
     It moves with the curvature of the constraints, too.
     """
-    if direction in problem.state or problem.moved is None or float(problem.moved[1]) == 0:
+    if direction in problem.state or problem.initial.moved is None or float(problem.initial.moved[1]) == 0:
         return
     if np.linalg.matrix_rank(at.jacobian[:, free]) < len(free):
         reason = translatable("it is the nearest of many to initial_guess; give more of it in initial_state")

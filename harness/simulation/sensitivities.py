@@ -237,7 +237,7 @@ class Sensitivities:
             self._require_same_motion(state)
             self._state = state
         self._steps, self._reached = self._steps + 1, float(step.end)
-        if self._problem.signs or self._problem.released:
+        if self._problem.signs or self._problem.ends.released:
             self._last = step.states(np.array([step.end]))[:, 0]
 
     def samples(self, block: SampleBlock) -> dict[str, Numbers]:
@@ -275,8 +275,8 @@ class Sensitivities:
         -------
         dict of str to float
         """
-        here, place = self._here, self._problem.until.index(event) + 1
-        zero = _Zero(here.problem, here.problem.events, f"event[{place}]")
+        here, place = self._here, self._problem.ends.until.index(event) + 1
+        zero = _Zero(here.problem, here.problem.ends.events, f"event[{place}]")
         delays = here.delays(zero, self._time, self._state, self._moves)
         return self._named({TIME: delays} | here.at_moving_time(self._time, self._state, self._moves, delays))
 
@@ -355,9 +355,9 @@ class Sensitivities:
         """
         ended = set(before.problem.multipliers) - set(after.problem.multipliers)
         if ended:
-            releases = before.problem.released
+            releases = before.problem.ends.released
             place = next(i for i, each in enumerate(releases, start=1) if set(each.multipliers) == ended)
-            return _Zero(before.problem, before.problem.releases, f"event[{place}]")
+            return _Zero(before.problem, before.problem.ends.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
         if len(changed) != 1:
             raise HolonomError(

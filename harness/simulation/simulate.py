@@ -72,7 +72,7 @@ def _ends_of_shapes(problem: MotionProblem, report: Report) -> dict[int, float]:
     ends, shapes = {}, problem.joint_shapes
     for switching in report.switchings:
         if switching.outcome is EventOutcome.JOINT_RELEASED:
-            release = next(each for each in problem.released if each.of == switching.function)
+            release = next(each for each in problem.ends.released if each.of == switching.function)
             ends |= {shape: switching.t for name in release.multipliers for shape in shapes.get(name, ())}
             problem = release.after
     return ends
@@ -152,7 +152,7 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     """
     precision = read_precision(str(request.precision))
     end = last_time(problem, request.until, precision)
-    if not problem.until:
+    if not problem.ends.until:
         return end, None
     with (
         doing("looking for the end of the motion"),
@@ -160,8 +160,8 @@ def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, End
     ):
         event = first_event(motion, precision, end)
     if event is None:
-        return end, Ending(problem.until, None)
-    return event.t, Ending(problem.until, event.name)
+        return end, Ending(problem.ends.until, None)
+    return event.t, Ending(problem.ends.until, event.name)
 
 
 def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
@@ -413,8 +413,8 @@ class _Simulation:
             tol=self.begun.engine.tol,
             compile_seconds=self.compile_seconds + self.motion.compile_seconds,
             run_seconds=seconds,
-            correction=self.problem.correction,
-            moved=self.problem.moved,
+            correction=self.problem.initial.correction,
+            moved=self.problem.initial.moved,
             cases=self._cases(start, end),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
@@ -423,7 +423,7 @@ class _Simulation:
             outputs={name: values[-1] for name, values in self.outputs.items()},
             undetermined=self._undetermined(end, mode),
             joints={name: joint for name, joint in self.problem.joints.items() if name in observed},
-            relative_degrees=self.problem.relative_degrees,
+            relative_degrees=self.problem.servo.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),
             violations=tuple(violations(self._errors(left, start, end), self.begun.engine.tol, self.motion.steps)),
@@ -456,10 +456,11 @@ class _Simulation:
     def _cases(self, start: MotionState, end: MotionState) -> tuple[Difficulty, ...]:
         """Return the hard cases of the robust engine, then those of both ends, each once."""
         called_for = [segment.case for segment in self.motion.segments if segment.case is not None]
-        if self.problem.released:
+        if self.problem.ends.released:
             end = start  # other constraints may hold at the end
         found = hard_cases(self.problem.independent, start, end, self.reactions, self.motion.steps)
-        answering = self.problem.reactions or not self.problem.servo  # servo-constraints have no reaction by themselves
+        # servo-constraints have no reaction by themselves
+        answering = self.problem.reactions or not self.problem.servo.constraints
         found = (case for case in found if answering or case is not Difficulty.FREE_CANCELLATION)
         return tuple(dict.fromkeys([*called_for, *found]))
 

@@ -301,7 +301,7 @@ class _Node(NamedTuple):
 
 def _through_switchings(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
     """Linearise along a motion with signs, by its derivatives by initial values."""
-    if problem.servo:
+    if problem.servo.constraints:
         raise HolonomError(ErrorKind.NO_LAW, problem.scene)
     nodes = _SwitchedNodes(problem, equations, request)
     error = nodes.error
@@ -487,7 +487,7 @@ def _stability_of(monodromy: Matrix) -> Stability:
 
 
 def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown: slice) -> FreeDeviations | None:
-    if not len(nodes.nodes[0].here["constraint"]) or problem.servo:
+    if not len(nodes.nodes[0].here["constraint"]) or problem.servo.constraints:
         return None
     accelerations, independent = nominal_of(problem).accelerations, list(problem.independent)
     if not all(node.is_free(accelerations, independent) for node in nodes.nodes):

@@ -91,7 +91,7 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
     """
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
-    others = (problem.energy, problem.matrices, problem.controls, problem.outputs, problem.events)
+    others = (problem.energy, problem.matrices, problem.controls, problem.outputs, problem.ends.events)
     found = [heyoka_expressions(program, solved) for program in others if program is not None]
     return solved | {name: value for results in found for name, value in results.items()}
 

@@ -100,7 +100,7 @@ class RowMaker:
         self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
         self._derivatives = [output for output in plan.outputs if output.kind is Kind.DERIVATIVE]
         _require_directions(problem, self._derivatives)
-        if problem.released or any(output.kind is Kind.RADIUS for output in plan.outputs):
+        if problem.ends.released or any(output.kind is Kind.RADIUS for output in plan.outputs):
             require_analytic(problem)
         self._moves = any(output.kind is not Kind.RADIUS for output in plan.outputs)
         self._end = float(last_time(problem, plan.until, read_precision("double"))) if self._moves else self._start
@@ -195,7 +195,7 @@ class RowMaker:
     def _batched(self) -> bool:
         """True if the batch engine can integrate motions of the problem."""
         problem = self._problem
-        ends_smoothly = problem.events is None or not _has_corners(problem.events)
+        ends_smoothly = problem.ends.events is None or not _has_corners(problem.ends.events)
         alone = problem.switching or problem.tables or problem.obstruction is not None or controls_may_fail(problem)
         return ends_smoothly and not alone and not self._hides and not self._derivatives
 
@@ -211,7 +211,7 @@ class RowMaker:
             return np.concatenate([there[small], left])
         ends, ended = self._ends(states, values, nominal)
         times = sorted({*self._asked, *(t for t in stops if t < self._end)})
-        stops = [np.minimum(time, ends) for time in times] if self._problem.until else times
+        stops = [np.minimum(time, ends) for time in times] if self._problem.ends.until else times
         found = self._engine.integrate(states, values, stops)
         end = self._batch_matrices(ends, found.states[-1], values), found.states[-1]
         stopped = expected(self.plan.tol, found.steps) * nominal.velocities
@@ -231,7 +231,7 @@ class RowMaker:
     def _ends(self, states: Floats, values: Floats, nominal: Nominal) -> tuple[Floats, NDArray[np.bool_]]:
         """Return the end times of motions, and True for each that is known."""
         k = states.shape[1]
-        if not self._problem.until:
+        if not self._problem.ends.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
         found = self._ending_engine.integrate(states, values, [self._end])
         zeros = self._without_rounding(found.seen, self._events_at, states, values, nominal)
@@ -378,7 +378,7 @@ class RowMaker:
 
     @property
     def _events(self) -> list[Expression]:
-        return [Name(f"event[{place}]") for place, _ in enumerate(self._problem.until, start=1)]
+        return [Name(f"event[{place}]") for place, _ in enumerate(self._problem.ends.until, start=1)]
 
     def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION

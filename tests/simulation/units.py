@@ -14,7 +14,7 @@ from holonom.program.motion_problem import DependsOn, MotionProblem
 from holonom.program.motion_program import Call, Expression, Name, Operation, Program, names_in
 from holonom.simulation.matrices import INDEXED
 
-PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "servo_matrix", "events", "switching"
+PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "switching"
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def in_units(problem: MotionProblem, units: Units) -> MotionProblem:
         exact = Fraction(number) * unit
         return format(Decimal(exact.numerator) / Decimal(exact.denominator), "e")
 
-    span, start = problem.time_span, problem.parametric_start
+    span, start, ends, servo = problem.time_span, problem.initial.parametric, problem.ends, problem.servo
     tables = tuple(
         replace(table, pieces=tuple((str(Fraction(first) * units.time), *rest) for first, *rest in table.pieces))
         for table in problem.tables
@@ -63,20 +63,10 @@ def in_units(problem: MotionProblem, units: Units) -> MotionProblem:
         law_end=problem.law_end and text(problem.law_end, units.time),
         start={name: text(number, of_inputs[name]) for name, number in problem.start.items()},
         tables=tables,
-        parametric_start=start and replace(start, program=changed(start.program)),
-        **{
-            name: changed(getattr(problem, name))
-            for name in (
-                "motion",
-                "projection",
-                "matrices",
-                "energy",
-                "controls",
-                "servo_matrix",
-                "events",
-                "switching",
-            )
-        },
+        initial=replace(problem.initial, parametric=start and replace(start, program=changed(start.program))),
+        ends=replace(ends, events=changed(ends.events)),
+        servo=replace(servo, matrix=changed(servo.matrix)),
+        **{name: changed(getattr(problem, name)) for name in PROGRAMS},
         drawing=None,
         _compiled={},
     )
