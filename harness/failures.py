@@ -87,6 +87,8 @@ class ErrorKind(Enum):
         "load holonom.mac and assign a holonomic_system(...)",
     )
     TOO_LONG = ("Maxima took longer than {detail}", "reduce the problem", "raise {--time-limit}")
+    COMMAND_TOO_LONG = ("the command took longer than {detail}", "reduce the problem", "raise {--time-limit}")
+    COMMAND_CRASHED = (MACHINE, "ended by {detail}; perhaps for lack of memory", "reduce the problem")
     TOO_LARGE = ("Maxima took more memory than {detail}", "reduce the problem", "raise {--memory-limit}")
     TOO_MANY_PROCESSES = ("the scene started more than {detail} processes", "start fewer")
     TOO_MUCH_TEXT = ("Maxima printed more than {detail}", "print less")

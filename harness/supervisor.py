@@ -15,14 +15,13 @@ import tempfile
 import time
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 
+from .failures import ErrorKind, HolonomError
+from .language import translatable
 from .processes import SIGNALLED, become_subreaper, die_with_parent, end_children, signal_without_parent
 from .temporary import private_directory, remove_abandoned_directories
 
-OUT_OF_TIME = 2
-CRASHED = 3
 ENDING_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 PARENT_ENDED = signal.SIGUSR1  # sent to the supervisor
 QUIET_ENDS = (*ENDING_SIGNALS, signal.SIGPIPE)
@@ -34,15 +33,7 @@ _time_limit = math.inf  # seconds
 _deadline = math.inf  # the time, of the monotonic clock, at which they are over
 
 
-@dataclass(frozen=True)
-class Ending:
-    """The ending of a command."""
-
-    status: int  # its exit status; 128 + n if signal n ended it; 2 if its time was over; 3 if it crashed
-    message: str = ""  # the message to print; empty if the command printed its own
-
-
-def supervise(command: Callable[[], int]) -> Ending:
+def supervise(command: Callable[[], int]) -> int:
     """Run a command in a child of a child of this process.
 
     Only the child, the supervisor, returns from this function.
@@ -54,12 +45,13 @@ def supervise(command: Callable[[], int]) -> Ending:
 
     Returns
     -------
-    Ending
+    int
+        Exit status of the command, 128 + n if signal n ended it on request.
 
     Raises
     ------
     HolonomError
-        No directory for temporary files can be made.
+        No directory for temporary files can be made, or the command crashed or ran out of time.
     """
     global _board
     heeded = [each for each in ENDING_SIGNALS if signal.getsignal(each) is not signal.SIG_IGN]
@@ -194,26 +186,29 @@ def _run(command: Callable[[], int], directory: Path, supervisor: int) -> int:
     return command()
 
 
-def _wait(child: int, heeded: Collection[int]) -> Ending:
+def _wait(child: int, heeded: Collection[int]) -> int:
     """Wait until the command ends or a signal requests its end."""
     while True:
         number = signal.sigwait(heeded)
         if number != signal.SIGCHLD:
-            return Ending(SIGNALLED + number)
+            return SIGNALLED + number
         ended, status = os.waitpid(child, os.WNOHANG)
         if ended:
-            return _ending_of(os.waitstatus_to_exitcode(status))
+            return _status_of(os.waitstatus_to_exitcode(status))
 
 
-def _ending_of(status: int) -> Ending:
-    if status >= 0:
-        return Ending(status)
+def _status_of(code: int) -> int:
+    """Return the exit status of a child, or raise the error that ended it."""
+    if code >= 0:
+        return code
     limit, what = _left_word()
-    during = f" while {what}" if what else ""
-    if -status == signal.SIGALRM:
-        message = f"the command took longer than {limit} s{during}. Reduce the problem, or raise --time-limit."
-        return Ending(OUT_OF_TIME, message)
-    if -status in QUIET_ENDS:
-        return Ending(SIGNALLED - status)
-    name = next((each.name for each in signal.Signals if each == -status), f"signal {-status}")
-    return Ending(CRASHED, f"ended by {name}{during}; perhaps for lack of memory. Reduce the problem.")
+    if -code == signal.SIGALRM:
+        raise HolonomError(ErrorKind.COMMAND_TOO_LONG, detail=_during(f"{limit} s", what))
+    if -code in QUIET_ENDS:
+        return SIGNALLED - code
+    name = next((each.name for each in signal.Signals if each == -code), f"signal {-code}")
+    raise HolonomError(ErrorKind.COMMAND_CRASHED, detail=_during(name, what))
+
+
+def _during(fact: str, what: str) -> str:
+    return translatable("%(fact)s while %(what)s", fact=fact, what=what) if what else fact

@@ -145,13 +145,11 @@ def main() -> None:
     os.environ.pop("MPLBACKEND", None)  # figures go to files; Matplotlib fails to load where this is nonsense
     _open_what_is_closed()
     try:
-        ending = supervise(run)
+        status = supervise(run)
     except HolonomError as error:
         status = _report(error.message(), error.kind.status)
     except OSError as error:  # as where no process may be started
         status = _system_error(error)
-    else:
-        status = _report(ending.message, ending.status) if ending.message else ending.status
     sys.stderr.flush()
     os._exit(status)  # the child has written all there is to write
 

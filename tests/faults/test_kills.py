@@ -85,12 +85,13 @@ def end_in_the_middle(command: list[str], number: int, place: Path, begun: str) 
 
 def test_the_supervisor_tells_a_crash_of_its_command(tmp_path):
     """A command that crashes, here by a signal of its own, is told in one sentence."""
-    crash = "import os, signal; from holonom.supervisor import doing, supervise\n"
+    crash = "import os, signal\nfrom holonom.failures import HolonomError\n"
+    crash += "from holonom.supervisor import doing, supervise\n"
     crash += "def command():\n    with doing('compiling'):\n        os.kill(os.getpid(), signal.SIGSEGV)\n"
-    crash += "print(supervise(command))"
+    crash += "try:\n    supervise(command)\nexcept HolonomError as error:\n"
+    crash += "    print(error.kind.name, error.kind.status, error.detail)"
     done = subprocess.run([sys.executable, "-c", crash], capture_output=True, text=True, env=os.environ, check=True)
-    assert "status=3" in done.stdout
-    assert "SIGSEGV" in done.stdout
+    assert done.stdout.split() == ["COMMAND_CRASHED", "3", "SIGSEGV", "while", "compiling"]
 
 
 @pytest.mark.parametrize("kill", [os.kill, os.killpg])
