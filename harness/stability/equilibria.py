@@ -44,7 +44,8 @@ DEPENDENT = 1e-12  # singular values of a step's equations, relative to the larg
 ROUNDING = 1e-12  # of a size
 NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
-UNRESOLVED = 1e-3  # the same if one is not isolated
+UNRESOLVED = 4e-3  # the same if one is not isolated
+MULTIPLE = 1 / 8  # forces left near a multiple zero, relative to those at this distance
 LEAST_STIFFNESS = 1e-7  # relative to the changes of all forces: what is smaller is not decided
 UNCERTAIN = 16  # Newton steps, of the largest force left, by which a place is uncertain
 BESIDE = 1e-9  # relative distance at which other rounding errors are met
@@ -320,6 +321,8 @@ class _Search:
                 singular += 1
                 continue
             found = _Solution(q, multipliers, *stiffness)
+            if not found.isolated and not self._is_zero_nearby(found):
+                continue
             if (place := self._unresolved(found, known, turns)) is not None:
                 known[place] = found if known[place].isolated else known[place]
                 continue
@@ -387,6 +390,25 @@ class _Search:
         rounding = UNCERTAIN * np.finfo(float).eps * np.linalg.norm(far, 2, axis=(1, 2))
         return float(np.max(np.linalg.norm(near - stiffness, 2, axis=(1, 2))) + np.max(rounding))
 
+    def _is_zero_nearby(self, found: "_Solution") -> bool:
+        """Return True if forces in directions without stiffness vanish nearby.
+
+        Newton's method does not see these directions. Far away, forces may be small and nowhere zero. Near a multiple
+        zero they are much smaller than at a distance.
+        """
+        here = self._at(found.q, found.multipliers)
+        basis = Tangent(here["equation_by_a"], here["constraint_by_q"]).basis
+        rows, values, columns = np.linalg.svd(found.stiffness)
+        flat = values <= found.least
+        directions, pushed = basis @ columns.T[:, flat], basis @ rows[:, flat]
+        directions *= UNRESOLVED / np.max(np.abs(directions) / self._sizes[:, None], axis=0)
+        moved = np.concatenate([np.zeros_like(directions), directions, -directions], axis=1)
+        forces = np.abs(self._near(found.q, found.multipliers, moved, "equation") @ pushed).reshape(3, flat.sum(), -1)
+        left, *apart = np.diagonal(forces, axis1=1, axis2=2)
+        met = np.abs(here["equation_by_q"]) @ (np.abs(found.q) + self._sizes)
+        rounding = UNCERTAIN * np.finfo(float).eps * np.abs(pushed).T @ met
+        return bool(np.all(left <= np.maximum(MULTIPLE * np.max(apart, axis=0), rounding)))
+
     def _near(self, q: Vector, multipliers: Vector, moved: Matrix, name: str) -> Matrix:
         """Return an array of the equations at k places near q, shape (k, ...).
 
@@ -401,7 +423,7 @@ class _Search:
 
         They have the order of the starting points.
         """
-        multipliers = np.zeros((len(self._equations.multipliers), q.shape[1]))
+        multipliers = self._balancing(q)
         left, solved = np.arange(q.shape[1]), np.zeros(q.shape[1], dtype=bool)
         with np.errstate(all="ignore"):
             for _ in range(ITERATIONS):
@@ -414,6 +436,23 @@ class _Search:
                     break
         for place in np.flatnonzero(solved):
             yield self._zeroed(q[:, place]), multipliers[:, place]
+
+    def _balancing(self, q: Matrix) -> Matrix:
+        """Return multipliers for k points, shape (g, k).
+
+        At half of the points they balance the forces best, at the others they are zero.
+
+        Newton's method goes to stable equilibria from the former, to others from the latter.
+        """
+        multipliers = np.zeros((len(self._equations.multipliers), q.shape[1]))
+        with np.errstate(all="ignore"):
+            here = self._at(q, multipliers)
+        J = self._sizes * np.moveaxis(here["constraint_by_q"], -1, 0)
+        forces = self._sizes * here["equation"].T
+        for k in np.flatnonzero(np.arange(q.shape[1]) % 4 < 2):
+            if np.isfinite(J[k]).all() and np.isfinite(forces[k]).all():
+                multipliers[self._independent, k] = np.linalg.lstsq(J[k].T, forces[k], rcond=None)[0]
+        return multipliers
 
     def _newton(self, q: Matrix, multipliers: Matrix) -> tuple[Matrix, Vector, Vector]:
         """Return Newton steps of k points, shape (n + g, k), their sizes and residuals.

@@ -319,3 +319,23 @@ def test_a_drag_without_a_derivative_at_rest_ended_in_an_internal_error():
     with pytest.raises(HolonomError) as refused:
         of_particle("potential_energy = x^2 + y^2, forces = -sqrt(dot(x)^2 + dot(y)^2)*[dot(x), dot(y)]").equilibria()
     assert refused.value.kind is ErrorKind.NO_DERIVATIVES
+
+
+PLANE = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = {}, constraints = [{}])$
+s : holonomic_scene(system, initial_state = [{}], initial_guess = [{}])$"""
+
+
+@pytest.mark.parametrize("potential", ["3*x^2*y^2 + 3*x", "x - 2*x^2*y^2"])
+def test_forces_that_vanish_only_at_infinity_are_no_equilibria(potential):
+    given = "x = 11/10, y = 7/10, dot(x) = 0, dot(y) = 0"
+    found = holonom.system(PLANE.format(potential, "", given, "")).equilibria()
+    assert (len(found), found.count, found.more, found.complete) == (0, 0, 0, True)
+
+
+def test_stable_equilibria_on_a_circle_are_found():
+    guess = "x = 11/10, y = 7/10, dot(x) = 0, dot(y) = 0"
+    found = holonom.system(PLANE.format("-3*y^2", "x^2 + y^2 - 1", "", guess)).equilibria()
+    places = {(each.coordinates["x"], each.coordinates["y"]): str(each.stability) for each in found}
+    assert places == {(-1, 0): "unstable", (1, 0): "unstable", (0, -1): "stable", (0, 1): "stable"}
+    assert found.complete
