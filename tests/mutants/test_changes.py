@@ -74,6 +74,11 @@ def test_a_seed_gives_the_same_mutants_again():
     assert drawn[0] == drawn[1] != drawn[2]
 
 
+def test_what_a_body_says_about_its_lengths_is_no_change():
+    assert run.words_of("zip(a, b, strict=True)") == run.words_of("zip(a,  b, strict=False)")
+    assert run.words_of("f(True)") != run.words_of("f(False)")
+
+
 @pytest.mark.parametrize(
     ("function", "test"),
     [
