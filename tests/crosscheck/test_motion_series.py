@@ -1,5 +1,6 @@
 """Power series and the controls of servo-constraints, put into the equations of motion."""
 
+import math
 import random
 from dataclasses import replace
 from fractions import Fraction
@@ -8,12 +9,14 @@ from pathlib import Path
 import pytest
 
 from holonom.crosscheck.motion_program import ScenePrograms
-from holonom.crosscheck.motion_series import SceneSeries, verify_series, verify_servo
+from holonom.crosscheck.motion_series import ORDER, SceneSeries, _expanded, verify_series, verify_servo
 from holonom.crosscheck.motions import read_motions
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
+from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import Call, Operation
-from holonom.program.request import Solve
+from holonom.program.request import Request, Solve
+from holonom.sandbox import Limits
 from holonom.series.request import EXACT
 from holonom.source import Source
 
@@ -83,3 +86,15 @@ def with_control_changed(programs: ScenePrograms, control: str) -> ScenePrograms
     )
     wrong = replace(problem, motion=replace(problem.motion, assignments=assignments))
     return replace(programs, problems=programs.problems | {Solve.DIRECT: wrong})
+
+
+def test_a_motion_expanded_from_its_accelerations_is_the_cosine(tmp_path):
+    """x = cos(2 t), with two powers more than its acceleration has."""
+    scene = tmp_path / "scene.mac"
+    scene.write_text("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = 2*x^2)$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$""")
+    known, computed = _expanded(motion_problem(scene, Request(), Limits()))
+    coefficients = [0 if k % 2 else (-4) ** (k // 2) / math.factorial(k) for k in range(ORDER + 3)]
+    assert [float(x) for x in known["x"]] == pytest.approx(coefficients, rel=1e-14)
+    assert [float(x) for x in computed["ddot(x)"]] == pytest.approx([-4 * x for x in coefficients[:-2]], rel=1e-14)

@@ -9,7 +9,7 @@ import pytest
 import sympy as sp
 from click.testing import CliRunner
 from confinement import without_notice
-from programs import PENDULUM, document
+from programs import PENDULUM, document, program
 from refusing import message_of
 
 from holonom.cli import holonom
@@ -23,7 +23,7 @@ from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import VERSION
-from holonom.program.effects import Measure, Status, read_costs, scene_costs
+from holonom.program.effects import Measure, Status, _points, _regular_point, read_costs, scene_costs
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
@@ -353,3 +353,22 @@ def test_a_value_for_an_undeclared_parameter_is_refused(write_scene):
     assert re.search(message_of(ErrorKind.REFUSED, "'mass'"), refusal_of(SPHERICAL, "--set", "mass=2"))
     file = write_scene(spherical_scene([]).replace("m = 3/2", "mass = 3/2"))
     assert re.search(message_of(ErrorKind.REFUSED, "parameter_values", "'mass'"), refusal_of(file))
+
+
+def test_points_of_measurements_are_near_one_and_have_no_symmetry():
+    points = [tuple(point.values()) for point in _points(dict.fromkeys("xyz"))]
+    values = [value for point in points for value in point]
+    assert all(0.5 <= value < 1.5 for value in values)
+    assert len(set(values)) == len(values)
+    assert len({round(abs(a - b), 9) for a, b, _ in points} | {round(abs(b - c), 9) for _, b, c in points}) > 1
+
+
+def test_a_point_of_measurements_is_where_the_program_has_values():
+    """A root of what is negative at the first points."""
+    names = dict.fromkeys("xy")
+    first = next(_points(names))
+    bound = first["x"] + 1e-3
+    root = ["Sqrt", ["Subtract", "x", {"num": repr(bound)}]]
+    found = _regular_point(program(["x", "y"], [("w", root)], {"f": "w"}), names)
+    assert found["x"] > bound
+    assert _regular_point(program(["x", "y"], [("w", ["Sqrt", "x"])], {"f": "w"}), names) == first
