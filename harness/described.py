@@ -1,6 +1,7 @@
 """A described system before the derivation: T, V, Q and f as names and trees.
 
-Trees are those of `holonom.trees`. SymPy expressions are made of them, and SymPy is imported, at the first use.
+Trees are those of `holonom.expression.trees`. SymPy expressions are made of them, and SymPy is imported, at the first
+use.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -8,8 +9,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from .expression.trees import Tree
 from .structs import key
-from .trees import Tree
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -108,13 +109,13 @@ def expression(tree: Tree) -> "Expr":
     Parameters
     ----------
     tree : Tree
-        A tree of `holonom.trees`.
+        A tree of `holonom.expression.trees`.
 
     Returns
     -------
     SymPy expression
     """
-    from .mathjson import to_sympy
+    from .expression.mathjson import to_sympy
 
     return to_sympy(tree)
 

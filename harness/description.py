@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .described import System, Values, each, expression
+from .expression.trees import JSON_INTEGERS, Tree
 from .failures import ErrorKind, HolonomError
 from .formats import Document, read, require
 from .hidden import hidden_character
 from .structs import key, structured
-from .trees import JSON_INTEGERS, Tree
 
 if TYPE_CHECKING:
     from sympy import Expr

@@ -6,10 +6,10 @@ Maxima does the comparison, in `examples/paper/printed.mac`. This module runs th
 from dataclasses import dataclass
 
 from .documents import ask
+from .expression.trees import Tree
 from .files import shared
 from .formats import Document, read
 from .structs import structured
-from .trees import Tree
 
 PRINTED = shared("examples") / "paper" / "printed.mac"
 

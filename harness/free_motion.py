@@ -15,15 +15,15 @@ from .crosscheck.report import CheckResult
 from .crosscheck.system import described_system
 from .described import System, Values, each
 from .documents import ask
+from .expression.mathjson import to_sympy
+from .expression.trees import Tree
 from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
 from .language import Message, translatable
-from .mathjson import to_sympy
 from .sandbox import Limits
 from .shown import Shown
 from .source import Source
 from .structs import key, structured
-from .trees import Tree
 
 Law = Mapping[str, Expr]
 

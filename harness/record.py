@@ -1,7 +1,7 @@
 """The derivation record: typed, frozen results of Maxima for one scene file.
 
-This is the only module that reads the record's format. Its expressions are trees (`holonom.trees`): data that are
-never evaluated as code. SymPy expressions are made of them, and SymPy is imported, at the first use.
+This is the only module that reads the record's format. Its expressions are trees (`holonom.expression.trees`): data
+that are never evaluated as code. SymPy expressions are made of them, and SymPy is imported, at the first use.
 """
 
 from collections.abc import Mapping
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from .described import Correction, System, Values, expression
 from .documents import ask
+from .expression.trees import Tree
 from .failures import ErrorKind, HolonomError
 from .formats import Document, read
 from .language import translatable
@@ -19,7 +20,6 @@ from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source
 from .structs import key, structured
-from .trees import Tree
 
 if TYPE_CHECKING:
     from sympy import Expr

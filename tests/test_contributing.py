@@ -20,6 +20,11 @@ def test_the_tests_of_the_architecture_rules_exist():
     assert [(file, test) for file, test in named if f"def {test}(" not in (ROOT / file).read_text()] == []
 
 
+def test_every_folder_of_the_package_is_in_the_layout():
+    folders = {path.name for path in (ROOT / "harness").iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert {name for name in folders if f"](harness/{name})" not in section("Project layout")} == set()
+
+
 def test_every_link_leads_to_a_file():
     links = re.findall(r"\]\(([^)]+)\)", TEXT)
     assert links

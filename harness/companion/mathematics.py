@@ -7,8 +7,8 @@ from markupsafe import Markup, escape
 from sympy import Add, Expr, IndexedBase, Symbol, sympify
 
 from ..errata import PrintedEquation
+from ..expression.mathjson import from_sympy
 from ..language import translatable, translated
-from ..mathjson import from_sympy
 from ..record import Equation, Relation, System
 from ..typeset.equations import latex_equation
 from ..typeset.latex import CORRECTION, MISPRINT, latex, latex_marked, latex_relation, latex_tree

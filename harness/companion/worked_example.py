@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..errata import PrintedEquation
+from ..expression.mathjson import from_sympy
 from ..free_motion import UniversalLaw
 from ..language import gettext, translated
-from ..mathjson import from_sympy
 from ..record import Equation, Relation
 from . import FREE_SCENE, INITIAL_SCENE
 from .cards import Card, Instance, anchors, named_equations, verdicts_on

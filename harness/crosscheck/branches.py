@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import sympy as sp
 from mpmath import mp
 
-from ..functions import Behaviour
-from ..mathjson import CLASSES
+from ..expression.functions import Behaviour
+from ..expression.mathjson import CLASSES
 
 CHANGING = tuple(function for each, function in CLASSES.items() if each.behaviour is Behaviour.CHANGING)
 """Functions that change in a range of their argument alone."""

@@ -18,7 +18,7 @@ from functools import cached_property
 from mpmath import mp
 
 from ..description import DescribedScene, Description
-from ..trees import Tree
+from ..expression.trees import Tree
 from .law import DATA_DIGITS, Law, Spline, number
 from .tape import Tape
 from .taylor import Polynomial, Taylor

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 
-from ..trees import Tree, integer
+from ..expression.trees import Tree, integer
 
 Displayed = str | Fraction | tuple
 """A name, a number, or an application: the operator, then what it is applied to."""

@@ -13,8 +13,8 @@ from typing import NamedTuple
 import sympy as sp
 from mpmath import mp
 
-from ..functions import Behaviour
-from ..mathjson import CLASSES
+from ..expression.functions import Behaviour
+from ..expression.mathjson import CLASSES
 from .irregular_point import IrregularPoint
 from .points import FUNCTIONS
 

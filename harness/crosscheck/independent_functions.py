@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING
 
 import sympy as sp
 
-from ..functions import Behaviour
-from ..mathjson import CLASSES
+from ..expression.functions import Behaviour
+from ..expression.mathjson import CLASSES
 from .linear import LinearEquations
 
 if TYPE_CHECKING:

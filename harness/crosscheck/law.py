@@ -13,7 +13,7 @@ from itertools import pairwise
 from mpmath import mp
 
 from ..description import Table
-from ..trees import Tree
+from ..expression.trees import Tree
 from .irregular_point import IrregularPoint
 from .tape import Tape
 from .taylor import Polynomial, Taylor

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import sympy as sp
 from mpmath import mp
 
-from ..mathjson import CLASSES
+from ..expression.mathjson import CLASSES
 
 PARTS = 1_000_003
 """Coordinates of a random point are multiples of its inverse, up to two: small, rarely special, too many to foresee."""

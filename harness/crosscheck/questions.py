@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 from ..description import DescribedScene, Description
 from ..documents import Question, ask_all
+from ..expression.functions import FUNCTIONS
 from ..failures import HolonomError
 from ..formats import Document
-from ..functions import FUNCTIONS
 from ..program.request import Solve
 from ..source import Source
 from .digits import WORKING_DIGITS

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import sympy as sp
 
+from ..expression.trees import Tree
 from ..language import translatable
 from ..record import Relation
-from ..trees import Tree
 from .system import exact
 from .verdict import Pair
 

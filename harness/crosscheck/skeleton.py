@@ -14,8 +14,8 @@ from math import factorial, inf
 import sympy as sp
 
 from ..described import System
+from ..expression.trees import Tree
 from ..record import LARGEST_SIZE, Derivation, Equation
-from ..trees import Tree
 from .displayed import displayed, operations, roots, size
 from .report import Item
 from .system import MechanicalSystem, gradient

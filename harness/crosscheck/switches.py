@@ -10,8 +10,8 @@ from itertools import combinations, pairwise
 
 from mpmath import mp
 
+from ..expression.trees import Tree
 from ..program.motion_problem import DependsOn, MotionProblem
-from ..trees import Tree
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .law import Law

@@ -14,8 +14,8 @@ from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
-from ..functions import FUNCTIONS
-from ..trees import Tree, converted, integer, refusal
+from ..expression.functions import FUNCTIONS
+from ..expression.trees import Tree, converted, integer, refusal
 from .irregular_point import IrregularPoint
 from .taylor import Polynomial, Taylor
 

@@ -7,8 +7,8 @@ import re
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from ..notation import scene_text
-from ..trees import Tree, converted
+from ..expression.notation import scene_text
+from ..expression.trees import Tree, converted
 
 LARGEST_CONDITION = 60
 """Names, numbers and operations of a condition that is printed as one formula; Maxima has its largest_condition."""

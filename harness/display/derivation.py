@@ -11,9 +11,9 @@ from rich.table import Table
 from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
+from ..expression.notation import scene_text
 from ..hidden import visible_line
 from ..language import gettext, ngettext, translatable, translated
-from ..notation import scene_text
 from ..record import LARGEST_SIZE
 from .condition import condition_lines
 from .heading import heading

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 
-from ..notation import scene_text
-from ..trees import Tree
+from ..expression.notation import scene_text
+from ..expression.trees import Tree
 from .heading import heading
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from rich.text import Text
 from sympy import Expr, Function
 from sympy.printing.str import StrPrinter
 
-from .. import notation
-from ..functions import FUNCTIONS
-from ..mathjson import CONSTANT_NAMES, HEADS
+from ..expression import notation
+from ..expression.functions import FUNCTIONS
+from ..expression.mathjson import CONSTANT_NAMES, HEADS
 from .condition import condition_lines
 from .motion import short_number
 

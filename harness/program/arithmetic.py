@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Generic, TypeVar
 
-from . import infix
+from ..expression import infix
 from .motion_program import CALLED, Atom, Call, Constant, Expression, Name, Operation, Program
 
 Value = TypeVar("Value")

@@ -15,9 +15,9 @@ from functools import partial
 from math import e, pi
 from textwrap import indent
 
-from . import infix
+from ..expression import infix
+from ..expression.infix import Formula
 from .arithmetic import ELEMENTARY, INFIX, Arithmetic
-from .infix import Formula
 from .motion_program import BINARY, Constant, Name, Operation, Program, names_in, names_used
 from .templates import filled, template
 

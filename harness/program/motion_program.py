@@ -7,8 +7,8 @@ One JSON document from Maxima:
     assignments   [name, expression], each of the inputs and the names before it
     outputs       name -> a name or a number
 
-An expression is a MathJSON tree. It stays as written, unlike in `holonom.mathjson`, where SymPy sorts and collects
-terms: its operations are what the program costs, and their order decides the last bits of the numbers.
+An expression is a MathJSON tree. It stays as written, unlike in `holonom.expression.mathjson`, where SymPy sorts and
+collects terms: its operations are what the program costs, and their order decides the last bits of the numbers.
 """
 
 import re
@@ -18,9 +18,9 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import Any
 
+from ..expression.functions import FUNCTIONS
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read, require
-from ..functions import FUNCTIONS
 from ..language import translatable
 from ..structs import structured
 from .request import Solve

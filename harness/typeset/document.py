@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sympy import Expr, Symbol
 
-from ..mathjson import from_sympy
+from ..expression.mathjson import from_sympy
 from ..record import Derivation, Equation, Record, Relation, Scene, System
 from .equations import blocks
 from .latex import latex

@@ -1,7 +1,7 @@
 """Typeset a formula as a box, on one line or broken over several.
 
 Sums are broken before a sign, products before a factor, and everything else inside its arguments. Terms and factors
-keep the order of the tree. Trees are those of `holonom.mathjson`, with additions for the paper's equations:
+keep the order of the tree. Trees are those of `holonom.expression.mathjson`, with additions for the paper's equations:
 
     ["Equal", left, right], ["NotEqual", left, right], ["List", item, ...]
     ["Subscript", "f", "beta"], ["Subscript", "A_inverse", "l", "s"], ["Subscript", "christoffel", "k", "m", "s"]
@@ -18,9 +18,9 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf
 
+from ..expression.functions import FUNCTIONS
+from ..expression.mathjson import Tree
 from ..failures import ErrorKind, HolonomError
-from ..functions import FUNCTIONS
-from ..mathjson import Tree
 from .boxes import (
     CLOSING,
     COMMA,

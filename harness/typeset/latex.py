@@ -7,7 +7,7 @@ from math import inf
 
 from sympy import Expr
 
-from ..mathjson import Tree
+from ..expression.mathjson import Tree
 from ..record import Relation
 from .formula import formula_box, relation_box
 from .presentation import presented

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 import sympy
 from sympy import Add, Expr, Float, Indexed, Integer, Mul, Number, Pow, Rational, S, Symbol
 
+from ..expression.mathjson import CONSTANT_NAMES, HEADS, Tree
 from ..failures import ErrorKind, HolonomError
-from ..mathjson import CONSTANT_NAMES, HEADS, Tree
 
 TIME = Symbol("t", real=True)
 READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Pow, Add)  # of factors

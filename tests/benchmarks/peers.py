@@ -14,7 +14,7 @@ import chain
 import sympy as sp
 from charged import charged
 
-from holonom.mathjson import from_sympy
+from holonom.expression.mathjson import from_sympy
 from holonom.maxima import run_batch
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_program import Program, read_program

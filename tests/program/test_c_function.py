@@ -9,10 +9,10 @@ import pytest
 from programs import PENDULUM, program
 from refusing import failing
 
+from holonom.expression.infix import atom
 from holonom.failures import ErrorKind
 from holonom.program.c_function import compile_c, load_c
 from holonom.program.c_source import MANY, ONE, c_source
-from holonom.program.infix import atom
 
 
 def test_without_a_compiler_one_sentence_says_so(monkeypatch, tmp_path):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from holonom.mathjson import Tree
+from holonom.expression.mathjson import Tree
 from holonom.typeset.latex import latex_marked, latex_tree, marked
 
 F_BETA, Q_S, U_RHO = ["Subscript", "f", "beta"], ["Subscript", "q", "s"], ["Subscript", "u", "rho"]

@@ -8,10 +8,10 @@ from collections.abc import Iterator
 from fractions import Fraction
 from functools import partial
 
-from .. import infix
+from ...expression import infix
+from ...expression.infix import Formula, Rank
 from ..arithmetic import ELEMENTARY, INFIX, Arithmetic
 from ..c_source import comment_text, title_of
-from ..infix import Formula, Rank
 from ..motion_program import Constant, Operation, Program
 from ..templates import filled
 

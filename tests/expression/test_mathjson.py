@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Float, I, Integer, Rational, Symbol, pi
 
+from holonom.expression.mathjson import CLASSES, from_sympy, to_sympy
 from holonom.failures import HolonomError
-from holonom.mathjson import CLASSES, from_sympy, to_sympy
 
 x, q1_rate = Symbol("x", real=True), Symbol("dot(q1)", real=True)
 

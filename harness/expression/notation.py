@@ -1,14 +1,14 @@
 """Write MathJSON trees as one line of text, in the notation of the scene files.
 
-Trees are those of `holonom.trees`, and give the order of terms and factors. A minus sign stands once before a term,
-negative powers and denominators stand once below a stroke.
+Trees are those of `holonom.expression.trees`, and give the order of terms and factors. A minus sign stands once before
+a term, negative powers and denominators stand once below a stroke.
 """
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 
 from .functions import FUNCTIONS
-from .program.infix import Formula, Rank, atom, call
+from .infix import Formula, Rank, atom, call
 from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
 
 CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i", "EulerGamma": "%gamma"}
@@ -42,7 +42,7 @@ def scene_text(tree: Tree) -> str:
     Parameters
     ----------
     tree : Tree
-        A tree of `holonom.trees`.
+        A tree of `holonom.expression.trees`.
 
     Returns
     -------

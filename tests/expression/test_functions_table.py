@@ -10,10 +10,10 @@ import sympy
 from mpmath import mp
 
 from holonom.crosscheck.tape import coefficients
-from holonom.functions import FUNCTIONS
-from holonom.mathjson import CLASSES, from_sympy, to_sympy
+from holonom.expression.functions import FUNCTIONS
+from holonom.expression.mathjson import CLASSES, from_sympy, to_sympy
+from holonom.expression.notation import scene_text
 from holonom.maxima import LIBRARY
-from holonom.notation import scene_text
 from holonom.typeset.latex import latex_tree
 
 ABOVE_ONE = ("Arcsec", "Arccsc", "Arcosh", "Arcoth")
@@ -84,7 +84,7 @@ def test_what_maxima_writes_is_in_the_table_and_nothing_else():
 
 
 SINC = """
-from holonom import functions
+from holonom.expression import functions
 slope = ["Divide", ["Subtract", ["Cos", "x"], "y"], "x"]
 functions.FUNCTIONS += (functions.Function("Sinc", "sinc", "sinc", slope=slope, **functions.PERIODIC),)
 """
@@ -98,8 +98,8 @@ from holonom.crosscheck.evaluation import Steps
 from holonom.crosscheck.tape import Tape
 from holonom.crosscheck.taylor import Taylor
 from holonom.crosscheck.verdict import Comparison, Pair, verify
-from holonom.mathjson import from_sympy, to_sympy
-from holonom.notation import scene_text
+from holonom.expression.mathjson import from_sympy, to_sympy
+from holonom.expression.notation import scene_text
 from holonom.typeset.latex import latex_tree
 
 tree, x = ["Sinc", "x"], sympy.Symbol("x", real=True)

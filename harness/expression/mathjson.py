@@ -1,4 +1,4 @@
-"""Convert MathJSON trees (`holonom.trees`) to SymPy expressions and back.
+"""Convert MathJSON trees to SymPy expressions and back.
 
 No part of a tree is ever evaluated as code.
 """
@@ -50,7 +50,7 @@ def to_sympy(tree: Tree) -> Expr:
     Parameters
     ----------
     tree : Tree
-        A tree of `holonom.trees`.
+        A tree of `holonom.expression.trees`.
 
     Returns
     -------

@@ -28,7 +28,7 @@ class Function:
     latex: str = ""  # a command, or a name that is set upright; empty where a formula has a sign of its own
     program: str = ""  # in most of C, NumPy, JavaScript and heyoka; empty where programs do not call it
     slope: Any = None
-    sympy: str = ""  # where SymPy, or `holonom.elliptic`, calls it otherwise than Maxima; mpmath mostly does the same
+    sympy: str = ""  # where SymPy, or `elliptic`, calls it otherwise than Maxima; mpmath mostly does the same
     arity: int = 1
     of_an_order: bool = False  # in formulas the first argument stands below
     behaviour: Behaviour = Behaviour.MODERATE
@@ -37,7 +37,7 @@ class Function:
 
     @property
     def in_sympy(self) -> str:
-        """Name in SymPy or in `holonom.elliptic`."""
+        """Name in SymPy or in `holonom.expression.elliptic`."""
         return self.sympy or self.scene
 
     @property

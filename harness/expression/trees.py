@@ -18,7 +18,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from .failures import ErrorKind, HolonomError
+from ..failures import ErrorKind, HolonomError
 
 Tree = int | str | dict | list
 

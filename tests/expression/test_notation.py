@@ -7,9 +7,9 @@ import sympy
 from hypothesis import given
 from hypothesis import strategies as st
 
+from holonom.expression.mathjson import to_sympy
+from holonom.expression.notation import scene_text
 from holonom.failures import HolonomError
-from holonom.mathjson import to_sympy
-from holonom.notation import scene_text
 
 SYMPYS_NAMES = {
     "abs": sympy.Abs,

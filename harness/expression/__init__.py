@@ -1,0 +1,1 @@
+"""Expressions: trees, their functions, and notations of them both ways."""
