@@ -10,7 +10,7 @@ from holonom.simulation.time_events import _affine
 
 
 def program(expression: object) -> Program:
-    return Program(None, Solve.DIRECT, "bordered", 0, ("t", "x"), (("w", expression_of(expression)),), {"f": Name("w")})
+    return Program(None, Solve.DIRECT, "bordered", ("t", "x"), (("w", expression_of(expression)),), {"f": Name("w")})
 
 
 HALF = ["Rational", 1, 2]
