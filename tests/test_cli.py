@@ -41,7 +41,7 @@ def test_help_waits_for_no_library():
     imported = [
         sys.executable,
         "-c",
-        "import holonom.cli, sys; print({'sympy', 'rich', 'numpy', 'heyoka'} & sys.modules.keys())",
+        "import holonom.cli, sys; print({'sympy', 'rich', 'numpy', 'heyoka', 'holonom.maxima'} & sys.modules.keys())",
     ]
     assert subprocess.run(imported, capture_output=True, text=True, check=True).stdout == "set()\n"
 

@@ -10,7 +10,6 @@ import click
 from ..failures import HolonomError
 from ..language import ENGLISH, LANGUAGES, speaking
 from ..sandbox import Limits
-from ..source import Source
 from ..supervisor import doing, time_to_limit
 from .background import run_in_background
 from .group import holonom
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from ..crosscheck.report import CheckReport, EquationVerdict
     from ..crosscheck.results import Content
     from ..record import Record
+    from ..source import Source
 
 TIME_TO_TELL = 1.0  # seconds reserved for the verdicts found within a time limit
 
@@ -107,6 +107,7 @@ def check(
     from ..crosscheck.report import Verdict
     from ..crosscheck.seed import fresh_seed
     from ..display.derivation import show_reports
+    from ..source import Source
 
     if result_files and len(scenes) > 1:
         raise click.UsageError("--result needs one SCENE")
@@ -127,7 +128,7 @@ def check(
     return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
 
 
-def _checked(source: Source, settings: dict[str, str], seed: str, results: Sequence["Content"]) -> "CheckReport":
+def _checked(source: "Source", settings: dict[str, str], seed: str, results: Sequence["Content"]) -> "CheckReport":
     """Check one scene file, its motions beside its equations."""
     from ..record import derived_record
     from .beside import beside, result_of
@@ -156,7 +157,7 @@ def _read_results(files: Sequence[Path]) -> list["Content"]:
     return [read_result(file) for file in files]
 
 
-def _verify_motions(source: Source, settings: dict[str, str], seed: str) -> list["EquationVerdict"]:
+def _verify_motions(source: "Source", settings: dict[str, str], seed: str) -> list["EquationVerdict"]:
     """Ask Maxima for the motions of a source, and verify them."""
     from ..crosscheck.questions import ask_for_check
 
