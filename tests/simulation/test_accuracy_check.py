@@ -76,7 +76,7 @@ def test_a_narrow_place_that_the_steps_look_at_is_no_violation(simulated, place)
 def test_exponentials_and_high_powers_of_the_state_alone_can_hide():
     def of(*expressions) -> bool:
         named = tuple((f"w{place}", expression) for place, expression in enumerate(expressions))
-        return may_hide(Program(None, Solve.DIRECT, "composed", 0, ("t", "x"), named, {"h": Name("w0")}))
+        return may_hide(Program(None, Solve.DIRECT, "composed", ("t", "x"), named, {"h": Name("w0")}))
 
     x, t = Name("x"), Name("t")
     assert of(Call(Operation.EXP, (x,)))

@@ -12,7 +12,7 @@ T, X = Name("t"), Name("x")
 
 
 def program(expression) -> Program:
-    return Program(None, Solve.DIRECT, "composed", 0, ("t", "x"), (("w1", expression),), {"h[1]": Name("w1")})
+    return Program(None, Solve.DIRECT, "composed", ("t", "x"), (("w1", expression),), {"h[1]": Name("w1")})
 
 
 def of(operation: Operation, *arguments) -> Call:
