@@ -27,6 +27,7 @@ from ..simulation.evaluation import batch_evaluation
 from ..simulation.inputs import Inputs
 from ..simulation.nominal import nominal_of
 from .extremes import Steps
+from .polynomials import rates_of
 from .quantities import along_motion, expressions_of
 
 ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
@@ -227,10 +228,10 @@ class BatchEngine:
                 arrived = ended.all()
                 if not arrived and (failing := np.array([end[0] not in self._unharmed for end in ends])).any():
                     return failing, None
-                _, least, greatest, count = map(np.array, zip(*ends, strict=True))
+                least, greatest, count = np.array([end[1:] for end in ends]).T
                 shortest, longest = np.minimum(shortest, least), np.maximum(longest, greatest)
                 well &= least * SHRUNK >= longest
-                taken += count
+                taken += count.astype(int)
                 if arrived:
                     break
                 self._keep(~ended, well)
@@ -267,10 +268,12 @@ class _StepRecorder:
     """
 
     def __init__(self, integrator: Any, first: int) -> None:
-        last = integrator.tc[first:], integrator.last_h, integrator.time  # views of what the last step leaves
-        self._last, self._stored = last, [np.empty((ROOM, *each.shape)) for each in last]
-        self._powers = np.arange(1, len(last[0][0]))[:, None, None] / SMALL
-        self._taken = 0
+        self._rates = integrator.tc[first:, 1:]  # views of what the last step leaves
+        self._last_length, self._last_time = integrator.last_h, integrator.time
+        quantities, powers, elements = self._rates.shape
+        self._series = np.empty((quantities, powers, ROOM, elements))
+        self._length, self._time = np.empty((2, ROOM, elements))
+        self._rescaled, self._taken = rates_of(powers, 1 / SMALL), 0
 
     def clear(self) -> None:
         """Forget the steps."""
@@ -279,17 +282,20 @@ class _StepRecorder:
     def __call__(self, integrator: Any) -> bool:
         """Record the polynomials, the length and the time of the last step."""
         taken = self._taken
-        if taken == len(self._stored[0]):
-            self._stored = [np.concatenate([each, np.empty_like(each)]) for each in self._stored]
-        series, length, time = self._stored
-        series[taken], length[taken], time[taken] = self._last
+        if taken == len(self._time):
+            stored = self._series, self._length, self._time
+            twice = (np.concatenate([each, np.empty_like(each)], axis=-2) for each in stored)
+            self._series, self._length, self._time = twice
+        self._series[:, :, taken] = self._rates
+        self._length[taken], self._time[taken] = self._last_length, self._last_time
         self._taken = taken + 1
         return True
 
     def steps(self) -> list[Steps]:
         """Return each quantity along the elements."""
-        series, length, time = (each[: self._taken] for each in self._stored)
-        rates = np.moveaxis(series[:, :, 1:], 0, 2)  # of the integrals: quantities, powers, steps, elements
-        scales = np.concatenate([np.ones((1, *length.shape)), np.repeat(length[None], rates.shape[1] - 1, axis=0)])
-        coefficients = rates * (self._powers * np.multiply.accumulate(scales))
-        return [Steps(each, time - length, length, 0.0) for each in np.ascontiguousarray(coefficients)]
+        length, time = self._length[: self._taken], self._time[: self._taken]
+        made = []
+        for each in self._series[:, :, : self._taken]:
+            coefficients = self._rescaled(np.concatenate([each, length[None]]).reshape(len(each) + 1, -1))
+            made.append(Steps(coefficients.reshape(each.shape), time - length, length, 0.0))
+        return made

@@ -19,7 +19,7 @@ from ..simulation.events import ZERO
 from .polynomials import half_of, peak_of, root_of, sizes_of, values_at
 
 SAMPLES = 17  # of a step
-LAST, RESOLVED = 2, 1e-10  # coefficients of a step, and what they are of the largest where the polynomial is near
+RESOLVED = 1e-10  # what the last coefficients of a step are of the largest where the polynomial is near
 PLACED = 1e-10  # of a step: how far rounding may move a zero
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 ROUNDING = 1e-13  # of the largest value that may be: no sign
@@ -58,8 +58,9 @@ class Steps(NamedTuple):
         -------
         ndarray of bool, shape (elements,)
         """
-        sizes = np.abs(self.coefficients)
-        return sizes[-LAST:].max(axis=(0, 1)) <= RESOLVED * np.maximum(sizes.max(axis=(0, 1)), least)
+        bounds, _, sizes, last = _sizes(self.coefficients)
+        resolved = last.max(axis=0) <= RESOLVED * np.maximum(sizes.max(axis=0), least)
+        return resolved & np.isfinite(bounds).all(axis=0)
 
     def resolved_until(self, times: Floats) -> NDArray[np.bool_]:
         """Return True for elements with a quantity resolved in each step by itself.
@@ -73,9 +74,9 @@ class Steps(NamedTuple):
         -------
         ndarray of bool, shape (elements,)
         """
-        sizes = np.abs(self.coefficients)
+        bounds, _, sizes, last = _sizes(self.coefficients)
         later = self.middle + self.least * self.length > times
-        return (later | (sizes[-LAST:].max(axis=0) <= RESOLVED * sizes.max(axis=0))).all(axis=0)
+        return (later | (last <= RESOLVED * sizes) & np.isfinite(bounds)).all(axis=0)
 
     def of(self, elements: Any) -> "Steps":
         """Return some of the elements.
@@ -226,7 +227,8 @@ def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
     reach, turns = _bounds(polynomials)
     step, element = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
     values = _values(polynomials[:, step, element], places)
-    sizes = np.pad(size(values), ((1, 1), (0, 0)), constant_values=-np.inf)
+    sizes = np.full((SAMPLES + 2, len(step)), -np.inf)
+    sizes[1:-1] = size(values)
     best, chosen = np.nonzero((sizes[1:-1] >= sizes[:-2]) & (sizes[1:-1] >= sizes[2:]))
     at_best = values[best, chosen]
     sign = np.where(size(at_best) == at_best, 1.0, -1.0)
@@ -252,7 +254,11 @@ def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
 
     The second array is True if the slope can vanish there.
     """
-    powers, *shape = polynomials.shape
-    reach, bend = sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(2, *shape)
+    reach, bend, *_ = _sizes(polynomials)
     sizes = np.abs(polynomials[:2])
     return reach + MARGIN * (reach + sizes[0]), sizes[1] <= bend + MARGIN * (bend + sizes[1])
+
+
+def _sizes(polynomials: Floats) -> Floats:
+    powers, *shape = polynomials.shape
+    return sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(-1, *shape)

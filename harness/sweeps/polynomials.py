@@ -5,14 +5,41 @@ returns an array of shape (results, m). The result for a polynomial does not dep
 """
 
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any
 
 from ..program.heyoka_function import import_heyoka
 from ..simulation.evaluation import Evaluation, in_full_vectors
 
 NEWTON = 4  # steps of Newton's method, which from near samples reach rounding
+LAST = 2  # coefficients of a step, which are small where the polynomial is near
 DIFFERENT = 8  # numbers of powers whose functions are cached
+
+
+@lru_cache(DIFFERENT)
+def rates_of(powers: int, scale: float) -> Evaluation:
+    """Compile the slopes of polynomials without a constant, in units of a length.
+
+    The length is the last row.
+
+    Parameters
+    ----------
+    powers : int
+        Number of coefficients of each polynomial, the linear one first.
+    scale : float
+        A factor of the results.
+
+    Returns
+    -------
+    Evaluation
+        Function with `powers` results.
+    """
+    polynomial, length = _coefficients(powers), import_heyoka().expression("length")
+    scaled, slopes = _number(scale), []
+    for power, coefficient in enumerate(polynomial, start=1):
+        slopes.append(_number(float(power)) * coefficient * scaled)
+        scaled = scaled * length
+    return _compiled(slopes, [*polynomial, length])
 
 
 @lru_cache(DIFFERENT)
@@ -37,7 +64,7 @@ def values_at(powers: int, places: tuple[float, ...]) -> Evaluation:
 
 @lru_cache(DIFFERENT)
 def sizes_of(powers: int) -> Evaluation:
-    """Compile bounds of p(x) - p(0) and p'(x) - p'(0) for |x| <= 1.
+    """Compile bounds of p(x) - p(0) and p'(x) - p'(0) for |x| <= 1, and sizes.
 
     Parameters
     ----------
@@ -47,11 +74,13 @@ def sizes_of(powers: int) -> Evaluation:
     Returns
     -------
     Evaluation
-        Function with two results, the bounds of p and of p'.
+        Function with four results, the bounds of p and of p', the size of the largest coefficient, and that of the
+        largest of the last ones.
     """
     polynomial = _coefficients(powers)
-    parts = [polynomial[1:], _slope(polynomial)[1:]]
-    return _compiled([import_heyoka().sum([_number(0.0), *map(_size, part)]) for part in parts], polynomial)
+    sizes, bends = list(map(_size, polynomial)), list(map(_size, _slope(polynomial)))
+    bounds = [import_heyoka().sum([_number(0.0), *part[1:]]) for part in (sizes, bends)]
+    return _compiled([*bounds, reduce(_larger, sizes), reduce(_larger, sizes[-LAST:])], polynomial)
 
 
 @lru_cache(2 * DIFFERENT)
@@ -161,6 +190,10 @@ def _slope(polynomial: Sequence[Any]) -> list[Any]:
 def _size(value: Any) -> Any:
     heyoka = import_heyoka()
     return heyoka.select(heyoka.lt(value, _number(0.0)), -value, value)
+
+
+def _larger(first: Any, second: Any) -> Any:
+    return import_heyoka().select(import_heyoka().lt(first, second), second, first)
 
 
 def _compiled(results: Sequence[Any], given: Sequence[Any]) -> Evaluation:

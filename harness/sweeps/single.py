@@ -24,7 +24,8 @@ from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
 from ..simulation.simulate import integrate
-from .extremes import LAST, RESOLVED, Steps
+from .extremes import RESOLVED, Steps
+from .polynomials import LAST
 from .quantities import expressions_of, observed_names, solved_names
 
 PARTS, MOST_PARTS = 4, 4096  # of a step, each with a polynomial of its own, and of a part that is too long; at most

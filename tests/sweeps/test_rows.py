@@ -12,7 +12,7 @@ import holonom
 from holonom.failures import ErrorKind
 from holonom.simulation.request import Stabilization
 from holonom.simulation.time_dependence import time_dependence
-from holonom.sweeps import time_watch
+from holonom.sweeps import batch_engine, time_watch
 from holonom.sweeps.rows import RowMaker, Status
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -179,6 +179,13 @@ def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
         maker = rows_of(*asked, elements=elements)
         assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
     assert rows_of(*asked[:1], "final", *asked[2:]).table(30, 31)["x"][0] == whole["x"][30]
+
+
+def test_rows_are_the_same_however_little_room_there_is_for_steps_at_first(rows_of, monkeypatch):
+    asked = "crane.mac", "max(abs(lambda1)),mean(y)", "m=50:500:8"
+    roomy = rows_of(*asked).table(0, 8)
+    monkeypatch.setattr(batch_engine, "ROOM", 4)
+    assert rows_of(*asked).table(0, 8).equals(roomy)
 
 
 def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scenes, monkeypatch):
