@@ -42,14 +42,14 @@ def identifiers(names: Sequence[str]) -> list[str]:
     list of str
         One for each name, in order.
     """
-    found: list[str] = []
+    found: dict[str, None] = {}
     for name in names:
         plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode()
         identifier = re.sub(r"\W", "_", plain)
         while identifier in found or not identifier:
             identifier += "_"
-        found.append(identifier)
-    return found
+        found[identifier] = None
+    return list(found)
 
 
 def default_name(scene_file: Path) -> str:

@@ -68,11 +68,15 @@ class Call:
 
     operation: Operation
     arguments: tuple["Expression", ...]
-    names: frozenset[str] = field(init=False, repr=False, compare=False)  # of the values that it is made of
+    # of the values that it is made of, from the first time that they are asked for
+    _names: frozenset[str] | None = field(init=False, default=None, repr=False, compare=False)
 
-    def __post_init__(self) -> None:
-        """Collect the names, which are asked for many times."""
-        object.__setattr__(self, "names", frozenset().union(*map(names_in, self.arguments)))
+    @property
+    def names(self) -> frozenset[str]:
+        """Names of the values that it is made of."""
+        if self._names is None:
+            object.__setattr__(self, "_names", frozenset(_names_below(self)))
+        return self._names
 
 
 Atom = Name | Fraction | Constant
@@ -183,6 +187,14 @@ def names_in(expression: Expression) -> Set[str]:
     if isinstance(expression, Call):
         return expression.names
     return {expression.text} if isinstance(expression, Name) else set()
+
+
+def _names_below(call: Call) -> Iterator[str]:
+    for argument in call.arguments:
+        if isinstance(argument, Name):
+            yield argument.text
+        elif isinstance(argument, Call):
+            yield from _names_below(argument)
 
 
 def names_used(program: Program) -> Set[str]:
