@@ -312,7 +312,7 @@ class _Search:
         """
         known: list[_Solution] = []
         more = singular = 0
-        for q, multipliers in self._solved(starts):
+        for q, multipliers in filter(self._satisfies_all_constraints, self._solved(starts)):
             q[turns] -= TURN * np.ceil(q[turns] / TURN - 0.5 - SAME)  # the angle pi, not -pi
             if any(self._close(q, other.q, turns) for other in known):
                 continue
@@ -332,6 +332,13 @@ class _Search:
                 known.append(found)
         known.sort(key=lambda each: tuple(np.round(each.q / self._sizes, 6)))
         return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more, singular
+
+    def _satisfies_all_constraints(self, solution: tuple[Vector, Vector]) -> bool:
+        """Return True if constraints that follow from the others near the initial state hold here."""
+        here = self._equations.at(self._point(*solution), range(len(self._equations.multipliers)))
+        first = self._equations.at(self._point(self._first, solution[1]), range(len(self._equations.multipliers)))
+        changes = np.maximum(*(np.abs(each["constraint_by_q"]) @ self._sizes for each in (here, first)))
+        return bool(np.all(np.abs(here["constraint"]) <= SAME * or_one(changes)))
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
         linear = linearized(self._problem, self._equations, self._point(found.q, found.multipliers))

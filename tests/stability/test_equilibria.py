@@ -339,3 +339,15 @@ def test_stable_equilibria_on_a_circle_are_found():
     places = {(each.coordinates["x"], each.coordinates["y"]): str(each.stability) for each in found}
     assert places == {(-1, 0): "unstable", (1, 0): "unstable", (0, -1): "stable", (0, 1): "stable"}
     assert found.complete
+
+
+@pytest.mark.parametrize(
+    ("constraints", "place"),
+    [("x^2 - 1, x - 1", (1, 1)), ("x - 1, x^2 - 1", (1, 1)), ("x^2 + y^2 - 1, y - sqrt(1 - x^2)", None)],
+)
+def test_constraints_that_follow_only_near_the_initial_state_hold_in_equilibria(constraints, place):
+    potential = "(y - x)^2/2" if place else "y"
+    start = "x = 1, y = 0, dot(x) = 0, dot(y) = 1" if place else "x = 0, y = 1, dot(x) = 1, dot(y) = 0"
+    found = holonom.system(PLANE.format(potential, constraints, start, "")).equilibria(starts=60)
+    assert [(each.coordinates["x"], each.coordinates["y"]) for each in found] == [pytest.approx(place or (0, 1))]
+    assert found.count == (1 if place else None)
