@@ -374,14 +374,18 @@ def verify_rounded(comparison: Comparison) -> CheckResult:
     for pair in comparison.pairs:
         difference = (pair.derived - pair.independent).xreplace(exact)
         changing = [x for x in comparison.rounded if x in difference.free_symbols]
-        steps = Steps([difference, pair.derived, pair.independent, *(x * difference.diff(x) for x in changing)])
+        terms = sp.Add.make_args(difference)
+        slopes = [x * difference.diff(x) for x in changing]
+        steps = Steps([difference, pair.derived, pair.independent, *terms, *slopes])
         with mp.workdps(CONFIRMING_DIGITS):
-            found, left, right, *changes = steps.at(values)
+            found, left, right, *more = steps.at(values)
+            sizes, changes = more[: len(terms)], more[len(terms) :]
             if found is None or left is None or right is None or mp.im(found):
                 detail = translatable("%(quantity)s has no real value at the initial time", quantity=pair.quantity)
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
             explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
-            noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * max(abs(left), abs(right))
+            largest = max(abs(each) for each in (left, right, *sizes) if each is not None)
+            noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * largest
             if abs(found) > explained + noise:
                 detail = translatable(
                     "%(quantity)s: the record gives %(derived)s, where %(known)s belongs",
