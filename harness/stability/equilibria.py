@@ -334,7 +334,10 @@ class _Search:
         return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more, singular
 
     def _satisfies_all_constraints(self, solution: tuple[Vector, Vector]) -> bool:
-        """Return True if constraints that follow from the others near the initial state hold here."""
+        """Return True if all constraints hold.
+
+        Near the initial state some follow from the others. Elsewhere they may not.
+        """
         here = self._equations.at(self._point(*solution), range(len(self._equations.multipliers)))
         first = self._equations.at(self._point(self._first, solution[1]), range(len(self._equations.multipliers)))
         changes = np.maximum(*(np.abs(each["constraint_by_q"]) @ self._sizes for each in (here, first)))
