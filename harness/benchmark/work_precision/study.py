@@ -161,7 +161,7 @@ def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
     Raises as `last_time`, or if an event may end the motion.
     """
     last_time(problem, plan.until, read_precision("double"))
-    if problem.until and plan.until is None:
+    if problem.ends.until and plan.until is None:
         raise HolonomError(ErrorKind.NO_COMMON_END, problem.scene)
     return Fraction(problem.time_span[1]) if plan.until is None else plan.until
 
