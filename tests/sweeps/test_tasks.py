@@ -23,8 +23,8 @@ def plan(rows_of):
 
 @pytest.fixture(scope="module")
 def scheduler():
-    """A scheduler with two workers, all in this process."""
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=None) as here:
+    """A scheduler with one worker, in this process, whose threads would share what RowMaker stores."""
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as here:
         yield here.scheduler_address
 
 
