@@ -141,6 +141,7 @@ def test_zeros_left_out_of_a_large_mass_matrix_are_zeros_and_nothing_else_may_be
         assert disagreeing(with_equations(record, *others), description) == {"kinetic_energy"}, names[i]
 
 
+@pytest.mark.usefixtures("all_agrees")
 def test_what_is_left_out_is_an_exact_group_of_a_known_size(coupled):
     record, description = derived_record(coupled, SHORT), coupled.description(SHORT)
     (derived,) = record.derivations
@@ -226,6 +227,7 @@ system : holonomic_system(coordinates = [x, y, z, s], parameters = [m, g, R, p],
 """
 
 
+@pytest.mark.usefixtures("all_agrees")
 def test_closed_forms_that_come_out_readable_belong_there(write_scene):
     source, strict = Source(write_scene(HELIX)), {"closed_form_size": "100"}
     record, without = derived_record(source), derived_record(source, strict)

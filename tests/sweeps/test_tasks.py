@@ -35,6 +35,7 @@ def taken(*given) -> dict[Chunk, bytes]:
     return dict(found)
 
 
+@pytest.mark.long
 def test_workers_of_a_scheduler_write_the_bytes_that_this_process_writes(plan, scheduler):
     assert taken(plan, 4, scheduler) == taken(plan, 1, None)
 
