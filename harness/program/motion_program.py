@@ -16,6 +16,7 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 from ..expression.functions import FUNCTIONS
@@ -97,7 +98,7 @@ class Program:
     # accelerations and constraint forces are unique, multipliers are not
     redundant: tuple[str, ...] = ()
 
-    @property
+    @cached_property
     def operations(self) -> int:
         """Number of operations, by the rule of `operations_in`."""
         return sum(operations_in(expression) for _, expression in self.assignments)
