@@ -338,10 +338,18 @@ class _Search:
 
         Near the initial state some follow from the others. Elsewhere they may not.
         """
-        here = self._equations.at(self._point(*solution), range(len(self._equations.multipliers)))
-        first = self._equations.at(self._point(self._first, solution[1]), range(len(self._equations.multipliers)))
-        changes = np.maximum(*(np.abs(each["constraint_by_q"]) @ self._sizes for each in (here, first)))
+        here = self._all_constraints(*solution)
+        changes = np.maximum(self._first_changes, np.abs(here["constraint_by_q"]) @ self._sizes)
         return bool(np.all(np.abs(here["constraint"]) <= SAME * or_one(changes)))
+
+    @cached_property
+    def _first_changes(self) -> Vector:
+        """Changes of all constraints within the nominal sizes at the initial time."""
+        here = self._all_constraints(self._first, np.zeros(len(self._equations.multipliers)))
+        return np.abs(here["constraint_by_q"]) @ self._sizes
+
+    def _all_constraints(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+        return self._equations.at(self._point(q, multipliers), range(len(multipliers)))
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
         linear = linearized(self._problem, self._equations, self._point(found.q, found.multipliers))

@@ -141,9 +141,8 @@ def _equations_at_rest(
 ) -> list[PolyElement] | None:
     """Return the polynomials that vanish at rest, or None if one is not a polynomial."""
     rows = {f"equation[{k}]" for k in range(1, len(equations.coordinates) + 1)}
-    program = computing(
-        equations.program, rows | {f"constraint[{beta}]" for beta in range(1, len(equations.multipliers) + 1)}
-    )
+    rows |= {f"constraint[{beta}]" for beta in range(1, len(equations.multipliers) + 1)}
+    program = computing(equations.program, rows)
     angles = _angles(program, equations.coordinates)
     plain = [
         *(name for name in equations.coordinates if name not in angles),
