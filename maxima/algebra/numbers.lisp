@@ -10,7 +10,7 @@
   (if (and (consp e) (eq (caar e) 'rat)) (/ (second e) (third e)) e))
 
 (defun rational-of-bigfloat (e) (times-power-of-two (second e) (- (third e) (car (last (car e))))))
-(defun digits-in-bits (digits) (ceiling (* digits 33219281) 10000000))
+(defun digits-in-bits (digits) (ceiling (* digits (log 10d0 2d0))))
 (defun binary-magnitude (x) (- (integer-length (numerator x)) (integer-length (denominator x))))
 
 (defun nearest-integer (value exponent)
