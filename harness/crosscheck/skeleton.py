@@ -1,9 +1,9 @@
 """The equations that a record must hold, their order and names.
 
-They are known before any of them is read. Closed forms are made if their predicted length is within a limit. The
-prediction is Maxima's: symbols and operations of T, V, Q and f, times g! for the multipliers, times b! for the
-largest block of coordinates that a row of the mass matrix couples, times r + 1 for r different roots. It is repeated
-here.
+They are known before any of them is read, but for closed forms whose predicted length is beyond a limit: these are
+there if they come out within it (`has_closed_forms`). The prediction is Maxima's: symbols and operations of T, V, Q
+and f, times g! for the multipliers, times b! for the largest block of coordinates that a row of the mass matrix
+couples, times r + 1 for r different roots. It is repeated here.
 """
 
 from __future__ import annotations
