@@ -25,6 +25,19 @@ part : holonomic_scene(system, effects = [bare, push], control_law = [u = 1 + t^
   initial_state = [x = 1/2, dot(x) = 1/3], time_span = [1, 2])$
 """
 
+# Three massless hooks on one cart: what is inverted couples all four coordinates, while A couples none.
+MASSLESS_HOOKS = """
+load("holonom.mac")$
+system : holonomic_system(
+  coordinates = [x, z1, z2, z3], parameters = [m, k],
+  kinetic_energy = m*dot(x)^2/2, potential_energy = k*(z1^2 + z2^2 + z3^2)/2, constraints = [z1 - x, z2 - x, z3 - x])$
+"""
+
+
+@pytest.fixture
+def massless_hooks(write_scene) -> Source:
+    return Source(write_scene(MASSLESS_HOOKS))
+
 
 @pytest.fixture(
     scope="session",

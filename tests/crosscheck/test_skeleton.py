@@ -219,16 +219,9 @@ def test_what_is_wrong_disagrees_and_says_where(every_term_record, every_term_de
     assert found.detail.startswith("constraint 1: ")
 
 
-HOOKS = """
-load("holonom.mac")$
-system : holonomic_system(coordinates = [x, z1, z2, z3], parameters = [m, k], kinetic_energy = m*dot(x)^2/2,
-  potential_energy = k*(z1^2 + z2^2 + z3^2)/2, constraints = [z1 - x, z2 - x, z3 - x])$
-"""
-
-
 @pytest.mark.usefixtures("all_agrees")
-def test_closed_forms_that_come_out_readable_belong_there(write_scene):
-    source, strict = Source(write_scene(HOOKS)), {"closed_form_size": "30"}
+def test_closed_forms_that_come_out_readable_belong_there(massless_hooks):
+    source, strict = massless_hooks, {"closed_form_size": "30"}
     record, without = derived_record(source), derived_record(source, strict)
     assert record.derivations[0].left_out is None
     assert not disagreeing(record, source.description())
