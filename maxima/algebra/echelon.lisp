@@ -81,16 +81,19 @@
             (incf sum (* (cdr e) (gethash (car e) values 0)))))
       (setf (gethash (car pivot) values) (short-number (/ (- sum) own))))))
 
-(defun $rank_of_rows (rows) (length (echelon-pivots (sparse-echelon (mapcar #'binary-row (cdr rows))))))
+(defun $rank_of_rows (rows) (length (echelon-pivots (sparse-echelon (mapcar #'binary-row (rows-from-maxima rows))))))
 
 (defun $independent_rows (rows)
   "Numbers of the rows that do not depend on those before them."
-  (let ((dependent (echelon-dependent (echelon-in-order (mapcar #'binary-row (cdr rows))))))
-    (mlist-of (loop for i from 1 to (length (cdr rows)) unless (member i dependent) collect i))))
+  (mlist-of (independent-rows-of (rows-from-maxima rows))))
+
+(defun independent-rows-of (rows)
+  (let ((dependent (echelon-dependent (echelon-in-order (mapcar #'binary-row rows)))))
+    (loop for i from 1 to (length rows) unless (member i dependent) collect i)))
 
 (defun $null_vector (rows size)
   "A list x of n numbers, not all of them zero, with  rows . x = 0; false where there is none."
-  (if (< ($rank_of_rows rows) size) (null-vector-of (mapcar #'row-from-maxima (cdr rows)) size)))
+  (if (< ($rank_of_rows rows) size) (null-vector-of (rows-from-maxima rows) size)))
 
 (defun null-vector-of (rows size)
   (let* ((echelon (sparse-echelon rows))
@@ -115,9 +118,9 @@
 
 (defun binary-row (row)
   (mapcar #'(lambda (e)
-              (let* ((number (rational-of (third e))) (exponent (- (binary-magnitude number) *bits-at-point*)))
-                (list* (second e) (nearest-integer number exponent) exponent)))
-          (cdr row)))
+              (let ((exponent (- (binary-magnitude (cdr e)) *bits-at-point*)))
+                (list* (car e) (nearest-integer (cdr e) exponent) exponent)))
+          row))
 
 (defun size-in-bits (x)
   (cond ((consp x) (+ (integer-length (car x)) (cdr x)))

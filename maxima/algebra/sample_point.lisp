@@ -19,6 +19,7 @@
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
 (defvar *smallest-coordinate* (expt 10 -70))
 (defvar *functions-with-zeros* '(%sin %cos %tan %cot %log) "With slope 1 or -1 at their zeros, but for signs and 1/x.")
+(defvar *share-of-dependence* (expt 10 -6) "The same for gradients in a point that is given in some ten digits.")
 (defvar *least-gain* 1000 "By how much a correction in floating point must lessen the residuals.")
 (defvar *most-refinements* 20)
 (defvar *most-halvings* 40 "Of a correction, in a line search.")
@@ -136,7 +137,8 @@
 (defun maxima-row (row)
   (cons '(mlist) (mapcar #'(lambda (e) (list '(mlist) (car e) (maxima-number (cdr e)))) row)))
 
-(defun row-from-maxima (row) (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row)))
+(defun rows-from-maxima (rows)
+  (mapcar #'(lambda (row) (mapcar #'(lambda (e) (cons (second e) (rational-of (third e)))) (cdr row))) (cdr rows)))
 
 ;;; ---- Newton's method ---------------------------------------------------------------------
 
@@ -351,13 +353,26 @@ vanish; false where Newton's method does not get there."
          (*digits-at-point* (+ digits 20))
          (*zero-share* (expt 10 (- 5 digits)))
          (*small-coordinate* *zero-share*)
-         (*equations* (cdr constraints)) (*jacobian* jacobian) (*unknowns* (cdr names)) (*metric* metric))
-    (catch 'irregular-point
-      (let ((found (or (newton-iteration point t) (root-from-around point) (newton-iteration point))))
-        (if found
-            (let ((nearer (nearer-root found point)))
-              (cons '(mlist) (mapcar #'(lambda (x) (maxima-number (plain-number (coordinate x nearer))))
-                                     *unknowns*))))))))
+         (*equations* (cdr constraints)) (*jacobian* jacobian) (*unknowns* (cdr names)) (*metric* metric)
+         (root (catch 'irregular-point (or (root-of-independent-equations point) (root-near point)))))
+    (if root
+        (cons '(mlist) (mapcar #'(lambda (x) (maxima-number (plain-number (coordinate x root)))) *unknowns*)))))
+
+(defun root-of-independent-equations (point)
+  "Where gradients are dependent next to a root, those of redundant equations, that root; nil where there is none."
+  (let* ((rows (numeric-rows *jacobian* point))
+         (numbers (let ((*zero-share* *share-of-dependence*)) (independent-rows-of rows)))
+         (root (if (< (length numbers) (length *equations*))
+                   (let ((*equations* (items-of-numbers numbers *equations*))
+                         (*jacobian* (mlist-of (items-of-numbers numbers (cdr *jacobian*)))))
+                     (catch 'irregular-point (root-near point))))))
+    (if (and root (all-of-p #'zerop (residuals-at root))) root)))
+
+(defun items-of-numbers (numbers items) (mapcar #'(lambda (i) (nth (1- i) items)) numbers))
+
+(defun root-near (point)
+  (let ((found (or (newton-iteration point t) (root-from-around point) (newton-iteration point))))
+    (if found (nearer-root found point))))
 
 (defun nearer-root (found point)
   "The root nearest to the point, of those that Newton's method gets to from around it; found, if it is none of them."
