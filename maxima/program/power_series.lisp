@@ -339,7 +339,8 @@
 ;;; What rounding leaves of a zero shrinks with the digits of the arithmetic: a coefficient that
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
 ;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
-;;; measured by the largest coefficients of orders around, and smaller by the digits added at least. Coefficients of
+;;; measured by the largest coefficients of orders around, and smaller by the digits added at least; or where both are
+;;; as small as an error of the initial state, which no digits of the arithmetic lessen. Coefficients of
 ;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits decide.
 
 (defvar *few-digits* 5)
@@ -350,17 +351,19 @@
               (mapcar #'(lambda (a b) (cons (rational-of a) (rational-of b))) (cdr (third x)) (cdr (third y))))
           (cdr coarse) (cdr fine)))
 
-(defun $agreeing_digits (coarse fine added)
+(defun $agreeing_digits (coarse fine added error)
   "Significant decimal digits that all coefficients of two expansions share."
-  (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added)) (digits most-positive-fixnum))
+  (let* ((rows (paired-coefficients coarse fine))
+         (levels (rounding-levels rows added error))
+         (digits most-positive-fixnum))
     (dolist (row rows digits)
       (mapc #'(lambda (pair level)
                 (unless (rounded-zero-p pair added level) (setq digits (min digits (shared-digits pair)))))
             row levels))))
 
-(defun $without_rounded_zeros (coarse fine added)
+(defun $without_rounded_zeros (coarse fine added error)
   "The finer expansion, where rounding has left no zero."
-  (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added)))
+  (let* ((rows (paired-coefficients coarse fine)) (levels (rounding-levels rows added error)))
     (flet ((without-rounding (pair level) (if (rounded-zero-p pair added level) 0 (maxima-number (cdr pair)))))
       (cons '(mlist)
             (mapcar #'(lambda (x row) (list '(mlist) (second x) (cons '(mlist) (mapcar #'without-rounding row levels))))
@@ -372,19 +375,21 @@
 (defun shrinks-p (pair added) (<= (* (abs (cdr pair)) (expt 10 (- added *few-digits*))) (abs (car pair))))
 (defun below-p (x level) (or (eql x 0) (and level (<= (binary-magnitude x) level))))
 
-(defun rounding-levels (rows added)
+(defun rounding-levels (rows added error)
   "For each order binary magnitudes of what is left of a zero at most, by the coarse and by the fine expansion."
-  (let ((sizes (sizes-by-order rows)) (of-coarse nil) (of-fine nil)
-        (few (digits-in-bits *few-digits*)) (most (- (digits-in-bits added))))
+  (let* ((sizes (sizes-by-order rows)) (of-coarse nil) (of-fine nil)
+         (few (digits-in-bits *few-digits*)) (most (- (digits-in-bits added)))
+         (of-start (if (eql error 0) nil (+ (binary-magnitude (rational-of error)) few))))
     (dolist (row rows)
       (mapc #'(lambda (pair size)
                 (when (and (not (eql (car pair) 0)) (not (eql (cdr pair) 0)) (shrinks-p pair added))
                   (setq of-coarse (larger of-coarse (- (binary-magnitude (car pair)) size))
                         of-fine (larger of-fine (- (binary-magnitude (cdr pair)) size)))))
             row sizes))
-    (mapcar #'(lambda (size)
-                (if of-coarse (cons (+ (min (+ of-coarse few) most) size) (+ (min (+ of-fine few) most) size))))
-            sizes)))
+    (flet ((level (of-zeros size)
+             (let ((share (larger of-start (if of-zeros (min (+ of-zeros few) most)))))
+               (if share (+ share size)))))
+      (mapcar #'(lambda (size) (cons (level of-coarse size) (level of-fine size))) sizes))))
 
 (defun larger (x y) (if (and x y) (max x y) (or x y)))
 
