@@ -77,7 +77,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
             for free in _free(problem, half, name):
                 _require_unique(problem, here, free, name)
                 missed = constraints(t, state, moves)[half][:, k]
-                column[free] += _least(here, missed, free, problem.dependent)
+                column[free] += _least(here, missed, free)
                 largest = sizes * np.max(np.abs(column) / sizes)
                 terms = np.abs(here.jacobian) @ largest + np.abs(missed)
                 if (np.abs(constraints(t, state, moves)[half][:, k]) <= CONSISTENT * terms).all():
@@ -133,7 +133,7 @@ def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
 
 
-def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bool) -> Numbers:
+def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64]) -> Numbers:
     """Return the least move of some places that corrects residuals of shape (g,).
 
     It is least in the mass metric.
@@ -142,4 +142,5 @@ def _least(at: Matrices, missed: Numbers, free: NDArray[np.int64], redundant: bo
     if not len(touched):
         return np.zeros(len(free))
     mass, jacobian = at.mass[np.ix_(free, free)], at.jacobian[np.ix_(touched, free)]
+    redundant = bool(np.linalg.matrix_rank(jacobian) < len(touched))  # as where more is given than is needed
     return least_step(mass[..., None], jacobian[..., None], missed[touched, None], redundant)[:, 0]

@@ -100,6 +100,12 @@ system : holonomic_system(coordinates = [x, y, z], parameters = [e],
 scene : holonomic_scene(system, parameter_values = [e = 0], time_span = [0, 4],
   initial_state = [x = 1, dot(x) = 0, y = 0, dot(y) = 0, z = 0, dot(z) = 0])$
 """
+DOUBLY_GIVEN = """
+system : holonomic_system(coordinates = [x, a, b], parameters = [m, r], potential_energy = 3*(x - 1)^2/2,
+  kinetic_energy = m*dot(x)^2/2 + (dot(a)^2 + dot(b)^2)/2, constraints = [x - r*a, r*a + b])$
+scene : holonomic_scene(system, parameter_values = [m = 1, r = 1/2], time_span = [0, 1],
+  initial_state = [x = 0, b = 0, dot(x) = 0], initial_guess = [a = 0])$
+"""
 
 
 def circle(start: str) -> holonom.Scene:
@@ -366,3 +372,12 @@ def test_large_derivatives_do_not_coarsen_the_motion():
     assert found["d(y, e)"] == pytest.approx(1e12 * t**2 / 2, rel=1e-14)
     assert found["d(x, x)"] == pytest.approx(np.cos(50 * t), abs=1e-12)
     assert found["d(z, z)"] == pytest.approx(np.cosh(9 * t), rel=1e-12)
+
+
+def test_an_initial_value_more_than_is_needed_was_refused():
+    """x = 1 - cos(w t), w^2 = 3/(m + 1/r^2 + 1)."""
+    motion = holonom.system(DOUBLY_GIVEN).simulate(samples=11, sensitivities=["m", "r"])
+    t, w, inertia = motion["t"], sqrt(1 / 2), 6.0
+    by_inertia = -t * np.sin(w * t) * w / (2 * inertia)
+    assert motion["d(x, m)"] == pytest.approx(by_inertia, abs=1e-13)
+    assert motion["d(x, r)"] == pytest.approx(by_inertia * -2 / 0.5**3, abs=1e-12)
