@@ -351,6 +351,16 @@ def test_a_servo_constraint_pushes_nothing():
     assert "no constraints that could push" in asked("arm").motion.evidence
 
 
+def test_a_floating_body_was_not_free_because_its_euler_parameters_keep_their_norm(write_scene):
+    text = """load("holonom.mac")$
+    system : holonomic_system(assembly(rigid_body(1, [1, 2, 3], [x, y, z], [e0, e1, e2, e3])))$
+    scene : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0,
+      dot(x) = 1, dot(y) = 0, dot(z) = 0, dot(e1) = 1, dot(e2) = 1/2, dot(e3) = 1/3])$
+    """
+    found = free_motion(write_scene(text), "scene", {}, Limits())
+    assert (found.motion.verdict, found.universal.verdict) == (FreeMotionVerdict.FREE, "all")
+
+
 def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_scene):
     # y'' = -x^3/3, x'' = -x^2 y from x = 1, y = 3/2 at t = 1, so that u = y/x; printed as "t - ... + 1/2"
     text = """load("holonom.mac")$

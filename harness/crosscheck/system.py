@@ -84,6 +84,22 @@ class MechanicalSystem:
         return tuple(dotted("dot", multiplier) for multiplier in self.multipliers)
 
     @cached_property
+    def pushing_multipliers(self) -> tuple[sp.Symbol, ...]:
+        """The multipliers of constraints that act on bodies.
+
+        They are all but those of normalisations of Euler parameters.
+        """
+        pairs = zip(self.constraints, self.multipliers, strict=True)
+        return tuple(multiplier for constraint, multiplier in pairs if not self._is_normalisation(constraint))
+
+    def _is_normalisation(self, constraint: sp.Expr) -> bool:
+        """Return True for e . e = 1 of four coordinates along which there is no inertia."""
+        e = [q for q in self.coordinates if constraint.has(q)]
+        if len(e) != 4 or sp.expand(constraint + 1 - sum(x**2 for x in e)) != 0:
+            return False
+        return sp.expand(sum(x * sp.diff(self.kinetic_energy, dotted("dot", x)) for x in e)) == 0
+
+    @cached_property
     def rates(self) -> Mapping[sp.Symbol, sp.Expr]:
         """The time derivative of each symbol that changes along a motion."""
         return {

@@ -120,7 +120,7 @@ class _MovedByLaw:
         constraints, rates = under_law(system.constraints), under_law(equations.constraint_derivatives)
         positive = under_law(law.positive)
         laws = tuple(expression.xreplace(values) for expression in law.controls.values())
-        self.multipliers = system.multipliers
+        self.multipliers = system.pushing_multipliers
         self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
         self.constraints, self.rates = Steps(constraints), Steps(rates)
         self.positions = Gradients(constraints, system.coordinates)
