@@ -1,7 +1,8 @@
 ;;; Maxima with the library loaded, saved as an image
 ;;;
 ;;; GCL interprets what it loads as text. The Lisp functions of the library and of the files that runs are made of are
-;;; compiled first, all as one file, where there is a C compiler.
+;;; compiled first, where there is a C compiler. Those that take terms of the expression graph, which they make
+;;; themselves, are compiled apart, without a look at the type of a structure whenever a slot is read.
 
 (in-package :maxima)
 
@@ -13,19 +14,27 @@ working directory; another Lisp than GCL saves none."
           (mfuncall '$load "stringproc")      ; which Maxima looks for and interprets when its first function is called
           (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
           (mapc #'load jobs)
-          (ignore-errors (load-compiled (functions-of library jobs)))
+          (ignore-errors (compile-in-two-files (directory (concatenate 'string library "/*/*.lisp")) jobs))
           (setq *maxima-started* nil *asked-for* nil)
           (si::gbc t)
           (si::save-system "image"))
   (quit))
 
-(defun functions-of (library jobs)
-  "The text of all functions that the library, in its namespace, and the files JOBS define in Lisp."
+(defun compile-in-two-files (paths jobs)
+  (load-compiled 1 (functions-of (remove-if-not #'of-terms-p paths)))
+  (load-compiled 2 (concatenate 'string (functions-of (remove-if #'of-terms-p paths))
+                                (text-of-functions (mapcan #'forms-in jobs)))))
+
+(defun of-terms-p (path)
+  (or (equal (pathname-name path) "expression_graph") (equal (car (last (pathname-directory path))) "program")))
+
+(defun functions-of (paths)
+  "The text of all functions that files of the library, in its namespace, define in Lisp."
+  (text-of-functions (lisp-in-namespace (mapcan #'forms-in paths))))
+
+(defun text-of-functions (forms)
   (with-output-to-string (out)
-    (let ((*package* (find-package :maxima)) (*print-pretty* nil))
-      (dolist (path (directory (concatenate 'string library "/*/*.lisp")))
-        (write-functions (lisp-in-namespace (forms-in path)) out))
-      (dolist (path jobs) (write-functions (forms-in path) out)))))
+    (let ((*package* (find-package :maxima)) (*print-pretty* nil)) (write-functions forms out))))
 
 (defun forms-in (path) (with-open-file (in path) (lisp-forms in)))
 
@@ -41,9 +50,10 @@ working directory; another Lisp than GCL saves none."
          (known (and (fboundp name) (symbol-function name))))
     (if (and (consp known) (eq (second known) name)) (format out "~S~%" (cons 'defun (cdr known))))))
 
-(defun load-compiled (text)
-  (with-open-file (out "functions.lisp" :direction :output)
-    (format out "(in-package :maxima)~%~A" text))
+(defun load-compiled (safety text)
+  "Load the functions of a text, compiled with that level of checks; 2 is GCL's own."
+  (with-open-file (out "functions.lisp" :direction :output :if-exists :supersede)
+    (format out "(in-package :maxima)~%(proclaim '(optimize (safety ~D)))~%~A" safety text))
   #+gcl (progn
           (setq compiler::*opt-two* "-O1" compiler::*opt-three* "-O1") ; as quick as with -O2, and sooner there
           (compile-file "functions.lisp")

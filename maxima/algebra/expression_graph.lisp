@@ -45,7 +45,7 @@
 (defun node-of (kind parts description)
   "The node so described; a new one where there is none yet."
   (let* ((nodes (expression-graph-nodes $expression_graph))
-         (hash (hash-of description))
+         (hash (hash-of (cdr description)))
          (known (assoc description (gethash hash nodes) :test #'equal)))
     (if known
         (cdr known)
@@ -62,7 +62,8 @@
 (defun hash-of (description)
   (let ((hash 0))
     (dolist (item description hash)
-      (setq hash (logand *hash-mask* (+ (* 31 hash) (logand *hash-mask* (sxhash item))))))))
+      (let ((own (if (typep item 'fixnum) item (sxhash item))))
+        (setq hash (logand *hash-mask* (+ (* 31 hash) (logand *hash-mask* own))))))))
 
 ;;; ---- numbers and symbols ---------------------------------------------------------------
 

@@ -16,17 +16,17 @@
 
 ;;; ---- live nodes and their uses -----------------------------------------------------------
 
-(defun own-parts (node)
-  "The nodes that a node is made of."
+(defun any-part-p (test node)
+  "Whether the test is true of a node that this one is made of. They are met in order, without a list of them."
   (case (node-kind node)
-    (sum (mapcar #'term-node (node-parts node)))
-    (product (mapcar #'factor-node (node-parts node)))
-    (call (mapcar #'term-node (cdr (node-parts node))))
-    (opaque (list (node-parts node)))))
+    (sum (dolist (term (node-parts node)) (if (funcall test (term-node term)) (return t))))
+    (product (dolist (factor (node-parts node)) (if (funcall test (factor-node factor)) (return t))))
+    (call (dolist (term (cdr (node-parts node))) (if (funcall test (term-node term)) (return t))))
+    (opaque (funcall test (node-parts node)))))
 
-(defun nodes-in (node)
-  "The same, but seen through opaque nodes."
-  (mapcar #'opened-node (own-parts (opened-node node))))
+(defun do-nodes-in (visit node)
+  "Visit the nodes that it is made of, seen through opaque nodes."
+  (any-part-p #'(lambda (part) (funcall visit (opened-node part)) nil) (opened-node node)))
 
 (defun opened-node (node) (if (eq (node-kind node) 'opaque) (node-parts node) node))
 
@@ -42,14 +42,15 @@
     (do () ((null waiting))
       (let ((node (pop waiting)))
         (push node live)
-        (dolist (part (nodes-in node)) (if (first-use-p part census) (push part waiting)))))
+        (do-nodes-in #'(lambda (part) (if (first-use-p part census) (push part waiting))) node)))
     (setf (census-nodes census) (in-order-of-birth live))
     census))
 
 (defun in-order-of-birth (nodes)
-  (let ((places (table-of-nodes nil)))
+  (let ((places (table-of-nodes nil)) (ordered nil))
     (dolist (node nodes) (setf (aref places (node-number node)) node))
-    (delete nil (coerce places 'list))))
+    (do ((number (1- (length places)) (1- number))) ((minusp number) ordered)
+      (if (aref places number) (push (aref places number) ordered)))))
 
 (defun first-use-p (node census) (eql 1 (incf (aref (census-uses census) (node-number node)))))
 
@@ -87,10 +88,10 @@
 (defun unruled-p (node rewriting) (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
 
 (defun parts-as-they-were-p (node rewriting)
-  (all-of-p #'(lambda (part)
-                (let ((term (rewritten-node part rewriting)))
-                  (and (eq (term-node term) part) (eql (term-coefficient term) 1))))
-            (own-parts node)))
+  (not (any-part-p #'(lambda (part)
+                       (let ((term (rewritten-node part rewriting)))
+                         (not (and (eq (term-node term) part) (eql (term-coefficient term) 1)))))
+                   node)))
 
 (defun node-again (node parts rewriting)
   "A node made anew from its parts rewritten."

@@ -47,7 +47,7 @@
   (let ((signs (make-signs)))
     (dolist (root roots) (push root (aref (signs-roots signs) (node-number (opened-node (term-node root))))))
     (dolist (node (census-nodes census))
-      (dolist (part (nodes-in node)) (push node (aref (signs-users signs) (node-number part)))))
+      (do-nodes-in #'(lambda (part) (push node (aref (signs-users signs) (node-number part)))) node))
     (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun turn-to-save (sum signs)

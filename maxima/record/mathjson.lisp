@@ -19,8 +19,11 @@
     (%airy_ai . "AiryAi") (%airy_bi . "AiryBi") (%airy_dai . "AiryAiPrime") (%airy_dbi . "AiryBiPrime")
     (%jacobi_sn . "JacobiSn") (%jacobi_cn . "JacobiCn") (%jacobi_dn . "JacobiDn")))
 
+(defvar *json-of-names* nil "How each symbol is written that the document has met.")
+
 (defun $write_json (tree file)
-  (let ((*print-base* 10) (*print-radix* nil)) ; obase : 8 of a scene is none of a document's
+  (let ((*print-base* 10) (*print-radix* nil) ; obase : 8 of a scene is none of a document's
+        (*json-of-names* (make-hash-table)))
     (write-file file (with-output-to-string (out) (write-json tree out) (terpri out)))))
 
 ;;; All at once: GCL hands each part to the system as it comes, by two calls.
@@ -43,7 +46,7 @@
   "Each [name, expression] as an array of both."
   (cons '($json_array)
         (mapcar #'(lambda (each)
-                    (list '($json_array) ($readable (second each)) (list '($json_expression) (third each))))
+                    (cons '($json_array) (mapcar #'(lambda (e) (list '($json_expression) e)) (cdr each))))
                 (cdr assignments))))
 
 (defun write-members (members out)
@@ -64,7 +67,7 @@
 
 (defun write-json-string (text out)
   (write-char #\" out)
-  (if (some #'to-be-escaped-p text)
+  (if (find-if #'to-be-escaped-p text)
       (map nil #'(lambda (c) (write-string (escaped c) out)) text)
       (write-string text out))
   (write-char #\" out))
@@ -80,7 +83,7 @@
 (defun write-mathjson (e out)
   (cond ((integerp e) (write-integer e out))
         ((floatp e) (write-number (decimal-digits (rational e) 17) out))
-        ((symbolp e) (write-json-string (mathjson-symbol e) out))
+        ((symbolp e) (write-string (json-of-name e) out))
         ((atom e) ($refuse '$expression_not_written e))
         ((eq (caar e) 'rat) (write-tree "Rational" (cdr e) out))
         ((eq (caar e) 'bigfloat) (write-bigfloat e out))
@@ -137,3 +140,8 @@
     (write-number (decimal-digits (rational-of-bigfloat e) (+ 2 digits)) out)))
 
 (defun mathjson-symbol (symbol) (or (cdr (assoc symbol *mathjson-constants*)) (characters-of-name symbol)))
+
+(defun json-of-name (symbol)
+  (or (gethash symbol *json-of-names*)
+      (setf (gethash symbol *json-of-names*)
+            (with-output-to-string (out) (write-json-string (mathjson-symbol symbol) out)))))
