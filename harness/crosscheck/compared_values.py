@@ -1,6 +1,7 @@
 """Compare values at states with the expected values in 50 digits.
 
-A difference counts if it is confirmed in twice the digits.
+A difference counts if it is confirmed in twice and in three times the digits: in one of them a value whose terms
+cancel may come out as zero by luck.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ from .digits import DIGITS, WORKING_DIGITS
 from .irregular_point import IrregularPoint
 from .motion_states import ComparedValue
 
-VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in twice the digits where it is rounding
+VANISHED = 2 * DIGITS // 3  # digits by which a difference shrinks in more digits where it is rounding
+MULTIPLES = 2, 3  # of the working digits, in which a difference has to be found again
 
 Parts = Iterator[tuple[str, ComparedValue]]  # each value with the part of the programs that makes it
 
@@ -31,30 +33,33 @@ def first_differences(compared: Callable[[], Parts], digits: int = DIGITS) -> tu
     Returns
     -------
     differences : dict of str to str
-        Message for each part with a wrong value, which is confirmed in twice the digits.
+        Message for each part with a wrong value.
     regular : bool
         True if all of them are numbers.
     """
     with mp.workdps(WORKING_DIGITS):
         made, regular = _made(compared())
-        suspected = {i: abs(each.given - each.true) for i, (_, each) in enumerate(made) if _differs(each, digits)}
-    if not suspected:
-        return {}, regular
+        differences = {i: _difference(value) for i, (_, value) in enumerate(made) if _differs(value, digits)}
+    for multiple in MULTIPLES:
+        if not differences:
+            break
+        with mp.workdps(multiple * WORKING_DIGITS):
+            again, complete = _made(compared())
+            made = again + made[len(again) :] if complete else again  # rounding may hide that a value is missing
+            regular = regular and complete
+            differences = {
+                i: _difference(made[i][1])
+                for i, before in differences.items()
+                if i < len(made) and _differs(made[i][1], digits) and not _is_rounding(before, made[i][1])
+            }
     found: dict[str, str] = {}
-    with mp.workdps(2 * WORKING_DIGITS):
-        again, still = _made(compared())
-        for place, before in suspected.items():
-            if place >= len(again) and not still:
-                continue  # rounding hid that a value is missing at this state
-            part, value = again[place] if place < len(again) else made[place]
-            rounding = abs(value.given - value.true) <= before * mp.mpf(10) ** -VANISHED
-            if _differs(value, digits) and not rounding:
-                found.setdefault(part, _described(value))
-    return found, regular and still
+    for part, value in (made[i] for i in differences):
+        found.setdefault(part, _described(value))
+    return found, regular
 
 
 def differing(compared: Callable[[], Iterator[ComparedValue]], digits: int = DIGITS) -> str:
-    """Return the first wrong value, confirmed in twice the digits, or an empty text.
+    """Return the first wrong value, or an empty text.
 
     Parameters
     ----------
@@ -95,6 +100,14 @@ def _made(compared: Parts) -> tuple[list[tuple[str, ComparedValue]], bool]:
 def _differs(value: ComparedValue, digits: int) -> bool:
     size = max(value.size, abs(value.given), abs(value.true))
     return abs(value.given - value.true) > mp.mpf(10) ** -digits * size
+
+
+def _difference(value: ComparedValue) -> mp.mpf:
+    return abs(value.given - value.true)
+
+
+def _is_rounding(before: mp.mpf, value: ComparedValue) -> bool:
+    return _difference(value) <= before * mp.mpf(10) ** -VANISHED
 
 
 def _described(value: ComparedValue) -> str:

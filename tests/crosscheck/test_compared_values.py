@@ -1,4 +1,4 @@
-"""Values at a state, found once more in twice the digits."""
+"""Values at a state, found again in more digits."""
 
 import pytest
 from mpmath import mp
@@ -30,3 +30,14 @@ def test_difference_is_found_though_a_later_value_is_missing(missing):
     found, regular = first_differences(compared)
     assert list(found) == ["program"]
     assert regular is not missing
+
+
+@pytest.mark.parametrize("lucky", [1, 2])
+def test_a_zero_that_rounding_left_by_luck_was_a_difference(lucky):
+    """Its terms cancel to nothing in one precision, but for what the state has lost, and to rounding in the others."""
+
+    def compared():
+        rounding = mp.mpf(10) ** (-242 if mp.dps == lucky * WORKING_DIGITS else -2 - mp.dps)
+        yield "program", ComparedValue("a", rounding, mp.zero, rounding)
+
+    assert first_differences(compared) == ({}, True)
