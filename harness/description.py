@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from .described import System, Values, each, expression
 from .expression.trees import JSON_INTEGERS, Tree
 from .failures import ErrorKind, HolonomError
-from .formats import Document, read, require
+from .formats import Document, nothing_collected, read, require
 from .hidden import hidden_character
 from .structs import key, structured
 
@@ -237,6 +237,7 @@ def is_description(text: str) -> bool:
     return BEGINS.match(text) is not None
 
 
+@nothing_collected()
 def read_description(text: str, file: Path) -> Description:
     """Read a description.
 

@@ -14,7 +14,7 @@ from .described import Correction, System, Values, expression
 from .documents import ask
 from .expression.trees import Tree
 from .failures import ErrorKind, HolonomError
-from .formats import Document, read
+from .formats import Document, nothing_collected, read
 from .language import translatable
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
@@ -176,6 +176,7 @@ def derived_record(
     return read_record(ask(Document.RECORD, file, settings=settings, limits=limits))
 
 
+@nothing_collected()
 def read_record(text: str) -> Record:
     """Read a derivation record.
 

@@ -1,5 +1,6 @@
 """Documents: every one has a schema, keeps it, and is refused where it does not."""
 
+import gc
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from refusing import failing
 
 from holonom.documents import Question, ask, ask_all
 from holonom.failures import ErrorKind, HolonomError
-from holonom.formats import SCHEMAS, Document, Publication, is_document, read, schema
+from holonom.formats import SCHEMAS, Document, Publication, is_document, nothing_collected, read, schema
 from holonom.maxima import DEFAULT_LIMITS, run_description
 from holonom.source import Source
 
@@ -131,3 +132,20 @@ def test_documents_written_before_a_limit_are_valid():
     record, *broken_off = run_description(description.text, description.file, writers, limits, None)
     read(Document.RECORD, record)
     assert [each.kind for each in broken_off] == [ErrorKind.TOO_MUCH_TEXT] * 2
+
+
+@nothing_collected()
+def collecting_while_divided_by(number):
+    return number / number and gc.isenabled()
+
+
+@pytest.mark.parametrize("collects", [True, False])
+def test_nothing_is_collected_while_a_document_is_read_and_then_as_before(collects):
+    (gc.enable if collects else gc.disable)()
+    try:
+        assert (collecting_while_divided_by(1), gc.isenabled()) == (False, collects)
+        with pytest.raises(ZeroDivisionError):
+            collecting_while_divided_by(0)
+        assert gc.isenabled() == collects
+    finally:
+        gc.enable()

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..documents import NAME, ask
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, read
+from ..formats import Document, nothing_collected, read
 from ..sandbox import Limits
 from ..source import Source
 from ..structs import structured
@@ -110,6 +110,7 @@ def scene_model(file: Source | Path, request: Request, parameters: Sequence[str]
     return read_model(ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits))
 
 
+@nothing_collected()
 def read_model(text: str) -> Model:
     """Read the document of a model.
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from ..described import Correction
 from ..documents import ask
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, read
+from ..formats import Document, nothing_collected, read
 from ..language import Message, translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
@@ -406,6 +406,7 @@ def problem_document(
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
+@nothing_collected()
 def read_problem(text: str, description: "Description | None" = None) -> MotionProblem:
     """Read the document of a motion problem.
 

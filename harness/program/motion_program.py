@@ -21,7 +21,7 @@ from typing import Any
 
 from ..expression.functions import FUNCTIONS
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, read, require
+from ..formats import Document, nothing_collected, read, require
 from ..language import translatable
 from ..structs import structured
 from .request import Solve
@@ -125,6 +125,7 @@ class Program:
         return _checked(document)
 
 
+@nothing_collected()
 def read_program(text: str) -> Program:
     """Read the document of a motion program.
 

@@ -14,7 +14,7 @@ from typing import Any
 import mpmath
 
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, Publication, published, read
+from ..formats import Document, Publication, nothing_collected, published, read
 from ..language import translatable
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
@@ -125,6 +125,7 @@ class Values:
     truncation_error: float
 
 
+@nothing_collected()
 def read_series(text: str) -> MotionSeries:
     """Read the power series that Maxima writes.
 
