@@ -6,11 +6,12 @@ use.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeVar
 
 from .expression.trees import Tree
-from .structs import key
+from .structs import entry
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -18,12 +19,21 @@ if TYPE_CHECKING:
 Result = TypeVar("Result")
 
 
+class Shape(StrEnum):
+    """A shape of a drawing."""
+
+    POINT = "point"
+    SEGMENT = "segment"
+    POLYLINE = "polyline"
+    CIRCLE = "circle"
+
+
 @dataclass(frozen=True)
 class Effect:
     """A named part of the kinetic or of the potential energy."""
 
-    effect: str
-    tree: Tree = key("value")
+    effect: str = entry("Name of the effect.")
+    tree: Tree = entry("Energy as an expression.", key="value")
 
     @cached_property
     def value(self) -> "Expr":
@@ -35,8 +45,8 @@ class Effect:
 class ForceEffect:
     """A named part of the generalized forces, one component a coordinate."""
 
-    effect: str
-    trees: tuple[Tree, ...] = key("value")
+    effect: str = entry("Name of the effect.")
+    trees: tuple[Tree, ...] = entry("Generalized forces, one a coordinate.", key="value")
 
     @cached_property
     def value(self) -> "tuple[Expr, ...]":
@@ -48,25 +58,24 @@ class ForceEffect:
 class System:
     """A system as its scene file describes it, before the derivation."""
 
-    title: str  # what the system is
-    source: str | None  # where it is published
-    time: str  # name of the time
-    # coordinates, velocities, accelerations: names of q, dot(q) and ddot(q)
-    coordinates: tuple[str, ...]
-    velocities: tuple[str, ...]
-    accelerations: tuple[str, ...]
-    # controls, control_rates, control_accelerations: names of u, dot(u) and ddot(u)
-    controls: tuple[str, ...]
-    control_rates: tuple[str, ...]
-    control_accelerations: tuple[str, ...]
-    parameters: tuple[str, ...]  # names of the constants
-    multipliers: tuple[str, ...]  # names of the constraint multipliers
-    # kinetic_energy, potential_energy: T and V as sums of named parts
-    kinetic_energy: tuple[Effect, ...]
-    potential_energy: tuple[Effect, ...]
-    forces: tuple[ForceEffect, ...]  # Q as a sum of named parts
-    constraint_trees: tuple[Tree, ...] = key("constraints")  # each is zero on every motion
-    switches: tuple[str, ...] = ()  # names in T, V and Q that are 1 where a scene calls for them, else 0
+    title: str = entry("Title of the system.")
+    source: str | None = entry("Publication that describes the system.")
+    time: str = entry("Name of the time.")
+    coordinates: tuple[str, ...] = entry("Names of the coordinates.")
+    velocities: tuple[str, ...] = entry("Names of the velocities, one a coordinate.")
+    accelerations: tuple[str, ...] = entry("Names of the accelerations, one a coordinate.")
+    controls: tuple[str, ...] = entry("Names of the controls.")
+    control_rates: tuple[str, ...] = entry("Names of the first derivatives of the controls.")
+    control_accelerations: tuple[str, ...] = entry("Names of the second derivatives of the controls.")
+    parameters: tuple[str, ...] = entry("Names of the parameters.")
+    multipliers: tuple[str, ...] = entry("Names of the multipliers, one a constraint.")
+    kinetic_energy: tuple[Effect, ...] = entry("Kinetic energy by effects.")
+    potential_energy: tuple[Effect, ...] = entry("Potential energy by effects.")
+    forces: tuple[ForceEffect, ...] = entry("Generalized forces by effects.")
+    constraint_trees: tuple[Tree, ...] = entry("Constraints f(q, t, u) = 0.", key="constraints")
+    switches: tuple[str, ...] = entry(
+        "Names in T, V and Q: 1 where a derivation has them among its effects, else 0.", ()
+    )
 
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
@@ -74,15 +83,24 @@ class System:
         return each(expression, self.constraint_trees)
 
 
+class SystemTitle(NamedTuple):
+    """The title of a system and its source."""
+
+    title: Annotated[str, "Title of the system."]
+    source: Annotated[str | None, "Publication that describes the system."]
+
+
 class Correction(NamedTuple):
     """A change of an initial value to satisfy the constraints."""
 
-    name: str
-    size: str  # in decimal digits
+    name: Annotated[str, "Coordinate or velocity that was changed."]
+    size: Annotated[str, "Size of the change, in decimal digits."]
 
 
 class Values(Mapping[str, "Expr"]):
     """Expressions by name."""
+
+    SHAPE: ClassVar = {"type": "object", "additionalProperties": {"type": ["integer", "string", "array", "object"]}}
 
     def __init__(self, trees: Mapping[str, Tree]) -> None:
         self.trees = trees

@@ -8,18 +8,20 @@ and titles hold no characters that hide or reverse text.
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
-from .described import System, Values, each, expression
+from .described import Shape, System, Values, each, expression
+from .expression.functions import FUNCTIONS
 from .expression.trees import JSON_INTEGERS, Tree
 from .failures import ErrorKind, HolonomError
-from .formats import Document, nothing_collected, read, require
+from .formats import Document, decoded, require
 from .hidden import hidden_character
-from .structs import key, structured
+from .schema import Rules
+from .structs import entry, structured
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -31,22 +33,64 @@ TIME = "t"
 SIZE = "closed_form_size"  # a setting for every file
 
 
+WORD = r"%?[^\x00-@\[-\^`{-\x9f][^\x00-$&-/:-@\[-\^`{-\x9f]*"
+NUMBER = r"^-?[0-9]{1,4300}(\.[0-9]{1,400})?([eE][+-]?[0-9]{1,4})?$"
+HEADS = (
+    *("Add", "And", "Divide", "Equal", "Greater", "GreaterEqual", "HalfStep", "Less", "LessEqual", "Max", "Min"),
+    *("Multiply", "Negate", "Not", "NotEqual", "NotSame", "Or", "Power", "Rational", "Same", "Subscript", "Subtract"),
+    *("Table", "UnitStep", "Which", *(each.head for each in FUNCTIONS)),
+)
+EXPRESSION = {
+    "description": "An integer, a number, a name, or a function with its arguments. Table has the place of its table, "
+    "from 0, and the time.",
+    "anyOf": [
+        {"type": "integer"},
+        {
+            "description": "An integer from 2^53 on, or a decimal number, which is the fraction with these digits.",
+            "type": "object",
+            "properties": {"num": {"description": "Digits of the number.", "type": "string", "pattern": NUMBER}},
+            "required": ["num"],
+            "additionalProperties": False,
+        },
+        {"$ref": "#/$defs/Name"},
+        {
+            "type": "array",
+            "minItems": 2,
+            "prefixItems": [{"enum": sorted(HEADS)}],
+            "items": {"$ref": "#/$defs/Expression"},
+        },
+    ],
+}
+NAME = {
+    "description": "Of a quantity, an effect, a scene or a word of the language.",
+    "type": "string",
+    "pattern": rf"^({WORD}|d{{1,3}}ot\({WORD}\))$",
+}
+Name = Annotated[str, Rules({"$ref": "#/$defs/Name"})]
+Expression = Annotated[Tree, Rules({"$ref": "#/$defs/Expression"})]
+Pair = tuple[Expression, Expression]
+BY_NAME = {"propertyNames": {"$ref": "#/$defs/Name"}, "additionalProperties": {"$ref": "#/$defs/Expression"}}
+Expressions = Annotated[Values, Rules(BY_NAME)]
+OUTPUT_NAME = {"pattern": rf"^{WORD}(\[[1-9][0-9]{{0,3}}\])?$"}
+OutputExpressions = Annotated[Values, Rules(BY_NAME | {"propertyNames": OUTPUT_NAME})]
+Place = Annotated[int, Rules({"minimum": 1})]
+NoValues = partial(Values, {})
+
+
 @dataclass(frozen=True)
 class Table:
-    """Points of a cubic spline in the time.
+    """Points of a cubic spline in the time."""
 
-    `ends` are the derivatives at both ends, None for the natural spline.
-    """
-
-    points: tuple[tuple[Tree, Tree], ...]
-    ends: tuple[Tree, Tree] | None
+    points: tuple[Pair, ...] = entry("Times, increasing, each with a value.", minItems=2)
+    ends: Pair | None = entry("Derivatives at both ends; null for the natural spline.")
 
 
-class DescribedRelease(NamedTuple):
+@dataclass(frozen=True)
+class DescribedRelease:
     """Constraints, by their multipliers, released at the first zero of an expression."""
 
-    condition: Tree
-    multipliers: tuple[str, ...]
+    condition: Expression = entry("Expression at whose first zero crossing the constraints end.")
+    multipliers: tuple[Name, ...] = entry("Multipliers of the released constraints.")
 
 
 @dataclass(frozen=True)
@@ -54,52 +98,29 @@ class DescribedScene:
     """A scene as its file states it, with exact numbers.
 
     No value is corrected or solved for.
-
-    Attributes
-    ----------
-    name, title : str
-        The name it is assigned to, and its title.
-    effects : tuple of str
-        Names of the effects it calls for, in the order of the system's.
-    control_law : mapping of str to Expr
-        Controls as functions of the time, by name. A law may be switched, and may hold tables (`Description.tables`).
-    prescribed_reactions : mapping of str to Expr
-        Multipliers as functions of the time, by name.
-    servo_trees : tuple of trees
-        Servo-constraints: expressions that the controls without a law make zero.
-    parameter_values : mapping of str to Expr
-        The parameters that have values. Settings are among them.
-    initial_state, initial_guess : mapping of str to Expr
-        Coordinates and velocities that the scene gives, and guesses of the others.
-    span_trees : pair of trees or None
-        First and last time.
-    until_trees : tuple of trees
-        Expressions whose zeros end the motion.
-    released : tuple of DescribedRelease
-        Constraints that end.
-    observe : tuple of str
-        Kinds of quantities to compute.
-    outputs : mapping of str to Expr
-        Named quantities to compute, of t, the state, accelerations, controls, multipliers and ``energy``.
-    nominal : mapping of str to Expr
-        Sizes of coordinates, velocities and the time ``t``.
     """
 
-    name: str
-    title: str
-    effects: tuple[str, ...]
-    control_law: Values
-    prescribed_reactions: Values
-    servo_trees: tuple[Tree, ...] = key("servo_constraints")
-    parameter_values: Values
-    initial_state: Values
-    initial_guess: Values
-    span_trees: tuple[Tree, Tree] | None = key("time_span")
-    until_trees: tuple[Tree, ...] = key("until")
-    observe: tuple[str, ...]
-    nominal: Values = field(default_factory=lambda: Values({}))
-    outputs: Values = field(default_factory=lambda: Values({}))
-    released: tuple[DescribedRelease, ...] = ()
+    name: Name = entry("The name it is assigned to.")
+    title: str = entry("What it is.")
+    effects: tuple[Name, ...] = entry("Names of the effects it calls for, in the order of the system's.")
+    control_law: Expressions = entry("Controls as functions of the time. A law may be switched, and may hold tables.")
+    prescribed_reactions: Expressions = entry("Multipliers as functions of the time, in place of controls.")
+    servo_trees: tuple[Expression, ...] = entry(
+        "Expressions that the controls without a law make zero.", key="servo_constraints"
+    )
+    parameter_values: Expressions = entry("Numbers for parameters. Settings are among them.")
+    initial_state: Expressions = entry("Coordinates and velocities as they were given.")
+    initial_guess: Expressions = entry("Coordinates and velocities near which the others are looked for.")
+    span_trees: Pair | None = entry("First and last time.", key="time_span")
+    until_trees: tuple[Expression, ...] = entry("Expressions whose zeros end the motion.", key="until")
+    observe: tuple[Name, ...] = entry("What to compute.")
+    nominal: Expressions = entry("Sizes of coordinates, velocities and the time t.", NoValues)
+    outputs: OutputExpressions = entry(
+        "What to compute under names of its own, of t, the state, accelerations, controls, multipliers and energy; "
+        "name[k] is the k-th component of a list.",
+        NoValues,
+    )
+    released: tuple[DescribedRelease, ...] = entry("Constraints that end.", ())
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
@@ -110,6 +131,76 @@ class DescribedScene:
     def servo_constraints(self) -> "tuple[Expr, ...]":
         """Expressions that the controls without a law make zero."""
         return each(expression, self.servo_trees)
+
+
+@dataclass(frozen=True)
+class DescribedEffect:
+    """A named part of an energy, which is the sum of its parts."""
+
+    effect: Name = entry("Name of the effect.")
+    value: Expression = entry("Energy as an expression.")
+
+
+@dataclass(frozen=True)
+class DescribedForces:
+    """A named part of the generalized forces."""
+
+    effect: Name = entry("Name of the effect.")
+    value: tuple[Expression, ...] = entry("Generalized forces, one a coordinate.")
+
+
+@dataclass(frozen=True)
+class DescribedShape:
+    """A shape of the system's picture."""
+
+    shape: Shape = entry("Kind of the shape.")
+    numbers: tuple[Expression, ...] = entry(
+        "x and y of its places in their order; the radius of a circle last.", minItems=2
+    )
+
+
+@dataclass(frozen=True)
+class DescribedSystem:
+    """A system as its file states it."""
+
+    name: Name | None = entry("The name it is assigned to; null where it is described within its scenes.")
+    title: str = entry("What it is.")
+    source: str | None = entry("Where it is published.")
+    coordinates: tuple[Name, ...] = entry("q, at least one.", minItems=1)
+    controls: tuple[Name, ...] = entry("u.")
+    parameters: tuple[Name, ...] = entry("Constants that scenes give values to.")
+    kinetic_energy: tuple[DescribedEffect, ...] = entry("T.")
+    potential_energy: tuple[DescribedEffect, ...] = entry("V.")
+    forces: tuple[DescribedForces, ...] = entry("Q.")
+    constraints: tuple[Expression, ...] = entry("f, each zero on every motion.")
+    drawing: tuple[DescribedShape, ...] = entry("Shapes, of which the system's picture is made.")
+    switches: tuple[Name, ...] = entry("Names in T, V and Q: 1 in a scene that has them among its effects, else 0.", ())
+
+
+@dataclass(frozen=True)
+class DescriptionDocument:
+    """All content of a scene file: one system and its scenes.
+
+    Nothing is derived yet. Numbers are exact.
+    """
+
+    DEFINITIONS: ClassVar = {"Name": NAME, "Expression": EXPRESSION}
+
+    closed_form_size: int = entry("Size beyond which closed forms are left out.", minimum=1)
+    settings: Expressions = entry(
+        "Numbers that the file was run with; those of parameters are among the parameter values of the scenes."
+    )
+    assumptions: tuple[Expression, ...] = entry("What the file assumes of its quantities.")
+    declarations: tuple[tuple[Name, Name], ...] = entry("Names with what each is declared to be, such as an integer.")
+    system: DescribedSystem = entry("The system.")
+    tables: tuple[Table, ...] = entry("Tables of control laws and servo-constraints.")
+    scenes: tuple[DescribedScene, ...] = entry("The scenes, oldest first.")
+    joint_shapes: Mapping[str, tuple[Place, ...]] = entry(
+        "Of multipliers, the segments between places that only their joint draws: places in the drawing, from 1.", dict
+    )
+    joints: Mapping[str, Name] = entry(
+        "Of multipliers, the joint or body that wrote the constraint, by its name in the file.", dict
+    )
 
 
 @dataclass(frozen=True)
@@ -200,7 +291,7 @@ class Description:
         for name, text in settings.items():
             content = _with_value(content, name, _number(text), self.file)
         if SIZE in settings:
-            require(Document.DESCRIPTION, content)
+            require(Document.DESCRIPTION, content, DescriptionDocument)
         return replace(self, content=content)
 
     def with_initial_state(self, scene: str, state: Mapping[str, float]) -> "Description":
@@ -237,7 +328,6 @@ def is_description(text: str) -> bool:
     return BEGINS.match(text) is not None
 
 
-@nothing_collected()
 def read_description(text: str, file: Path) -> Description:
     """Read a description.
 
@@ -259,7 +349,7 @@ def read_description(text: str, file: Path) -> Description:
     """
     if len(text) > LARGEST:
         raise HolonomError(ErrorKind.DESCRIPTION_TOO_LARGE, file, f"{LARGEST // 2**20} MiB")
-    content = read(Document.DESCRIPTION, text)
+    content = decoded(Document.DESCRIPTION, text, DescriptionDocument)
     if len(content["scenes"]) > MOST_SCENES:
         raise HolonomError(ErrorKind.TOO_MANY_SCENES, file, str(len(content["scenes"])))
     for prose in _texts(content):

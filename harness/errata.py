@@ -9,7 +9,7 @@ from .documents import ask
 from .expression.trees import Tree
 from .files import shared
 from .formats import Document, read
-from .structs import structured
+from .structs import entry
 
 PRINTED = shared("examples") / "paper" / "printed.mac"
 
@@ -21,19 +21,27 @@ class PrintedEquation:
     The published version is that of our copy. Equations are Maxima text, on one line.
     """
 
-    number: str  # the equation number, without brackets; empty for an equation that has none
-    name: str  # what the equation is
-    agrees: bool  # whether the printed equation is the derived one
-    printed: str  # the equation as published
-    # left side less right side as published, less the same as derived; None where the paper agrees
-    difference: str | None
-    corrected: str | None  # the printed equation, mended; None where the paper agrees
-    note: str | None  # note about the transcription
-    # printed_tree, difference_tree, corrected_tree: the same equations as trees that `holonom.typeset` sets in type, in
-    # their own order; None where there is none
-    printed_tree: Tree
-    difference_tree: Tree | None
-    corrected_tree: Tree | None
+    number: str = entry("The equation number; empty where it has none.")
+    name: str = entry("Name of the equation.")
+    agrees: bool = entry("Whether the printed equation is the derived one.")
+    printed: str = entry("The equation as published, Maxima text.")
+    difference: str | None = entry(
+        "Left less right side as published, less the same as derived; null where the paper agrees."
+    )
+    corrected: str | None = entry("The printed equation, mended; null where the paper agrees.")
+    note: str | None = entry("Note about the transcription.")
+    printed_tree: Tree | None = entry(
+        "The printed equation as MathJSON, in its own order, for typesetting; null where there is none."
+    )
+    difference_tree: Tree | None = entry("The difference as MathJSON.")
+    corrected_tree: Tree | None = entry("The corrected equation as MathJSON.")
+
+
+@dataclass(frozen=True)
+class Errata:
+    """Every equation that the paper prints, compared with the derived one."""
+
+    equations: tuple[PrintedEquation, ...] = entry("The equations in the paper's order.")
 
 
 def errata() -> tuple[PrintedEquation, ...]:
@@ -49,5 +57,4 @@ def errata() -> tuple[PrintedEquation, ...]:
     HolonomError
         Maxima is missing or raises an error.
     """
-    document = read(Document.ERRATA, ask(Document.ERRATA, PRINTED))
-    return tuple(structured(PrintedEquation, equation) for equation in document["equations"])
+    return read(Document.ERRATA, ask(Document.ERRATA, PRINTED), Errata).equations

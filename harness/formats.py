@@ -1,25 +1,25 @@
-"""Formats of documents: JSON with a format, a version and a schema.
+"""Formats of documents: JSON with a format, a version and a type of the content.
 
-A schema, `schemas/NAME.json` for the format ``holonom-NAME``, states the shape of a document down to expressions and
-programs, which are read strictly where they are read.
+The schema of a document follows from its type (`holonom.schema`), down to expressions and programs, which are read
+strictly where they are read.
 """
 
 import gc
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from enum import StrEnum
 from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .failures import ErrorKind, HolonomError
 from .language import translatable
+from .schema import schema_of
+from .structs import Struct, reader_of, written
 
 if TYPE_CHECKING:
     from jsonschema_rs import Draft202012Validator
 
-SCHEMAS = Path(__file__).with_name("schemas")
 VERSION = 2
 SHOWN = 200  # characters of a validator's message
 
@@ -86,7 +86,8 @@ def nothing_collected() -> Iterator[None]:
         gc.enable()
 
 
-def read(document: Document, text: str) -> dict[str, Any]:
+@nothing_collected()
+def read(document: Document, text: str, kind: type[Struct]) -> Struct:
     """Read a document that Maxima writes.
 
     Parameters
@@ -95,6 +96,30 @@ def read(document: Document, text: str) -> dict[str, Any]:
         Kind of the document.
     text : str
         JSON text.
+    kind : type
+        Type of its content, by which it is checked.
+
+    Returns
+    -------
+    object
+        Instance of the type.
+
+    Raises
+    ------
+    HolonomError
+        The text is not JSON, or has another shape.
+    """
+    return reader_of(kind)(decoded(document, text, kind))
+
+
+@nothing_collected()
+def decoded(document: Document, text: str, kind: type) -> dict[str, Any]:
+    """Return the JSON of a document that Maxima writes.
+
+    Parameters
+    ----------
+    document, text, kind : Document, str, type
+        As for `read`.
 
     Returns
     -------
@@ -109,11 +134,11 @@ def read(document: Document, text: str) -> dict[str, Any]:
         content = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise _error(document, translatable("it is not JSON, %(error)s", error=error)) from None
-    require(document, content)
+    require(document, content, kind)
     return content
 
 
-def require(document: Document | Publication, content: Any) -> None:
+def require(document: Document | Publication, content: Any, kind: type) -> None:
     """Raise unless the value has the shape of a document.
 
     Parameters
@@ -122,6 +147,8 @@ def require(document: Document | Publication, content: Any) -> None:
         Kind of the document.
     content : object
         Value that was read from JSON.
+    kind : type
+        Type of the content.
 
     Raises
     ------
@@ -129,7 +156,7 @@ def require(document: Document | Publication, content: Any) -> None:
         The value has another shape.
     """
     try:
-        errors = list(_validator(document).iter_errors(content))
+        errors = list(_validator(document, kind).iter_errors(content))
     except UnicodeEncodeError as error:  # half of a character, which JSON can write
         raise _error(document, str(error)) from None
     if error := min(errors, key=lambda each: len(each.instance_path), default=None):
@@ -143,21 +170,23 @@ def _json_path(steps: Iterable[str | int]) -> str:
     return "$" + "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in steps)
 
 
-def published(name: Document | Publication, content: Mapping[str, Any]) -> dict[str, Any]:
+def published(name: Document | Publication, content: Any, text: Callable[[Any], str] = str) -> dict[str, Any]:
     """Return a published document with its format and version.
 
     Parameters
     ----------
     name : Document or Publication
         Kind of the document.
-    content : mapping of str to object
-        The other entries.
+    content : object
+        Dataclass, or mapping of str to object: the other entries.
+    text : callable
+        As for `written`.
 
     Returns
     -------
     dict
     """
-    return {"format": f"holonom-{name}", "version": VERSION, **content}
+    return {"format": f"holonom-{name}", "version": VERSION, **written(content, text)}
 
 
 def is_document(content: bytes) -> bool:
@@ -182,26 +211,11 @@ def is_document(content: bytes) -> bool:
     )
 
 
-def schema(name: str) -> dict[str, Any]:
-    """Return the JSON schema of a format.
-
-    Parameters
-    ----------
-    name : str
-        Name of the format without ``holonom-``.
-
-    Returns
-    -------
-    dict
-    """
-    return json.loads((SCHEMAS / f"{name}.json").read_text(encoding="utf-8"))
-
-
 @cache
-def _validator(name: str) -> "Draft202012Validator":
+def _validator(name: str, kind: type) -> "Draft202012Validator":
     from jsonschema_rs import Draft202012Validator
 
-    return Draft202012Validator(schema(name))
+    return Draft202012Validator(schema_of(kind, name, VERSION))
 
 
 def _error(document: Document | Publication, detail: str) -> HolonomError:

@@ -21,9 +21,10 @@ from .formats import Document, read
 from .free_verdicts import FreeMotionTrial
 from .language import Message, translatable
 from .sandbox import Limits
+from .schema import FloatText
 from .shown import Shown
 from .source import Source
-from .structs import key, structured
+from .structs import entry, group
 
 Law = Mapping[str, Expr]
 
@@ -36,36 +37,66 @@ class FreeMotionVerdict(StrEnum):
     UNDECIDED = "undecided"
 
 
+class UniversalVerdict(StrEnum):
+    """Verdicts on the laws under which every motion is free."""
+
+    ALL = "all"
+    SOME = "some"
+    NONE = "none"
+    UNDECIDED = "undecided"
+
+
+class TrajectoryKind(StrEnum):
+    """Forms of the control under which one motion is free."""
+
+    CLOSED_FORM = "closed form"
+    NUMERIC = "numeric"
+    SERIES = "series"
+    ANY_CONTROL = "any control"
+    NONE = "none"
+    NOT_DETERMINED = "not determined"
+
+
 @dataclass(frozen=True)
 class FirstCoefficient:
     """The first nonzero coefficient of a multiplier's power series."""
 
-    multiplier: str
-    order: int  # the power of t - t0
-    value: str  # ``p/q`` where the data are exact, else a decimal number of 30 digits
+    multiplier: str = entry("Name of the multiplier.")
+    order: int = entry("Order of the coefficient: the power of t - t0.", minimum=0)
+    value: str = entry(
+        "p/q where the data are exact, else a decimal number of 30 digits.",
+        pattern=r"^-?[0-9]+(/[0-9]+)?$|^-?[0-9][.][0-9]*e-?[0-9]+$",
+    )
 
 
 @dataclass(frozen=True)
 class MotionVerdict:
     """The verdict on whether the motion of the scene is free."""
 
-    verdict: FreeMotionVerdict  # free only where that is proved
-    # ``all states``, where every motion under the scene's law is free, or ``this state``
-    states: str = key("for")
-    evidence: Message  # evidence, or what is missing for a proof
-    # where undecided, the order to which all coefficients of the multipliers vanish; None where there are none
-    order: int | None
-    first: FirstCoefficient | None  # what shows that the motion is not free
+    verdict: FreeMotionVerdict = entry("Verdict on the motion. It is free only where that is proved.")
+    states: str = entry(
+        "all states where every motion under the scene's law is free, else this state.",
+        key="for",
+        enum=["all states", "this state"],
+    )
+    evidence: Message = entry("Reason of the verdict, or what is missing for a proof.")
+    order: int | None = entry(
+        "If undecided, the order to which the power series of all multipliers vanish; null where they have none.",
+        minimum=2,
+    )
+    first: FirstCoefficient | None = entry(
+        "The first coefficient that is not zero; null where the free motion shows that the motion is not free."
+    )
 
 
 @dataclass(frozen=True)
 class UniversalLaw:
     """A law under which every motion is free, or a family of such laws."""
 
-    controls: Values  # by control; in the time, the constants and the free controls
-    constants: tuple[str, ...]  # constants of integration: any numbers
-    free: tuple[str, ...]  # controls that stay free functions of the time
-    positive_trees: tuple[Tree, ...] = key("positive")
+    controls: Values = entry("By control; in the time, the constants and the free controls.")
+    constants: tuple[str, ...] = entry("Constants of integration: any numbers.")
+    free: tuple[str, ...] = entry("Controls that stay free functions of the time.")
+    positive_trees: tuple[Tree, ...] = entry("Expressions that are positive where the law holds.", key="positive")
     # what SymPy found when it tried the law on the equations of motion; None before that
     check: CheckResult | None = None
 
@@ -79,10 +110,11 @@ class UniversalLaw:
 class ControlCondition:
     """Expressions that must vanish if every motion is to be free."""
 
-    expression_tree: Tree = key("expression")
-    place_tree: Tree = key("place")
-    # the terms of the system that it comes from; ``inertia`` for kinetic energy and constraints
-    effects: tuple[str, ...]
+    expression_tree: Tree = entry("Expression that must vanish.", key="expression")
+    place_tree: Tree = entry("Function of the state that it is the coefficient of.", key="place")
+    effects: tuple[str, ...] = entry(
+        "Effects that the coefficient comes from; inertia for kinetic energy and constraints."
+    )
 
     @cached_property
     def expression(self) -> Expr:
@@ -99,20 +131,24 @@ class ControlCondition:
 class UniversalControls:
     """The laws under which every motion is free."""
 
-    verdict: str  # ``all`` (no other analytic law does), ``some``, ``none`` (there are none) or ``undecided``
-    laws: tuple[UniversalLaw, ...]
-    conditions: tuple[ControlCondition, ...]  # shortest first
-    generic: bool  # parameters were left open, and the answer is that for generic values
-    reason: Message
+    verdict: UniversalVerdict = entry(
+        "all: the laws are all analytic ones; some: others may exist; none: none exists; undecided."
+    )
+    laws: tuple[UniversalLaw, ...] = entry("Families of laws.")
+    conditions: tuple[ControlCondition, ...] = entry(
+        "What must vanish, as the coefficient of which function of the state, from which terms of the system."
+    )
+    generic: bool = entry("True for generic values of parameters that were left open.")
+    reason: Message = entry("Reason of the verdict.")
 
 
 @dataclass(frozen=True)
 class SeriesOfControls:
     """Power series of controls."""
 
-    order: int
-    time_tree: Tree = key("time")
-    coefficients: Mapping[str, tuple[Tree, ...]]  # by control, from the power 0 on
+    order: int = entry("Order of the series.")
+    time_tree: Tree = entry("Time of the expansion.", key="time")
+    coefficients: Mapping[str, tuple[Tree, ...]] = entry("Coefficients by control, from the power 0 on.")
 
     def law(self) -> Law:
         """Return the series as sums in the order of their powers.
@@ -137,17 +173,21 @@ class SeriesOfControls:
 class TrajectoryControl:
     """The control under which one motion is free."""
 
-    # ``closed form`` (in symbols, the initial data q1_0, dot(q1)_0, or in the scene's numbers), ``numeric`` (with the
-    # scene's numbers, along its time span), ``series`` (with the scene's numbers, at the initial time), ``any
-    # control``, ``none`` (there is none) or ``not determined``
-    kind: str
-    closed_law: Values = key("law")
-    free: tuple[str, ...]  # controls that stay free functions of the time; a closed form may contain them
-    motion: Values  # the free motion by coordinate, where its closed form is known
-    # times of the scene's time span with the values of the controls, if there are such controls
-    samples: tuple[tuple[float, ...], ...]
-    reason: Message
-    series: SeriesOfControls | None  # where the law is not closed
+    kind: TrajectoryKind = entry(
+        "closed form (in the initial data q1_0, dot(q1)_0, or the scene's numbers), numeric (along the time span), "
+        "series (at the initial time), any control, none or not determined."
+    )
+    closed_law: Values = entry("By control, where it is closed.", key="law")
+    free: tuple[str, ...] = entry("Controls that stay free functions of the time.")
+    motion: Values = entry("Coordinates of the free motion as functions of the time, where they are known.")
+    samples: tuple[tuple[FloatText, ...], ...] = entry(
+        "Times of the scene's time span with values of the controls, if there are such controls."
+    )
+    reason: Message = entry("Reason of the result.")
+    series: SeriesOfControls | None = entry(
+        "The law to an order, where it is not closed: by control the coefficients of the powers of t - time, from "
+        "the power 0 on."
+    )
 
     @property
     def order(self) -> int | None:
@@ -170,30 +210,34 @@ class PrescribedReactions:
     The multipliers are given by name, the controls as ``ddot(u)`` by name.
     """
 
-    reactions: Values
-    controls: Values
+    reactions: Values = entry("Prescribed multipliers, by name.")
+    controls: Values = entry("Resulting ddot(u), by name.")
 
 
 @dataclass(frozen=True)
 class OpenAccelerations:
     """Accelerations that the forces do not determine if the mass matrix is singular."""
 
-    rank: int  # of the mass matrix
-    # directions that it turns into zero, each by the accelerations in it; empty where they were not worked out
-    directions: tuple[Values, ...]
-    deciding: tuple[int, ...]  # numbers of the constraints that decide, from 1
+    rank: int = entry("The rank of the mass matrix.")
+    directions: tuple[Values, ...] = entry(
+        "Directions that the mass matrix turns into zero, each by the accelerations in it; empty where they were "
+        "not worked out."
+    )
+    deciding: tuple[int, ...] = entry("Numbers of the constraints that decide these accelerations, from 1.")
 
 
 @dataclass(frozen=True)
 class Premises:
     """Premises of the results: the system with the scene's effects, and its numbers."""
 
-    system: System
-    effects: tuple[str, ...]
-    redundant: tuple[str, ...]  # multipliers of the constraints that are left out
-    parameter_values: Values
-    control_law: Values
-    time_span: tuple[Tree, Tree] | None
+    system: System = entry("The system that moves, as in record.json.")
+    effects: tuple[str, ...] = entry("Those that the scene calls for.")
+    redundant: tuple[str, ...] = entry(
+        "Multipliers of the constraints that follow from the others: (10) is that of these others."
+    )
+    parameter_values: Values = entry("The scene's values of the parameters.")
+    control_law: Values = entry("The scene's law of all controls; empty where there is none, or a table gives it.")
+    time_span: tuple[Tree, Tree] | None = entry("First and last time; null where the scene gives none.")
 
     def trial(self) -> FreeMotionTrial:
         """Return the data for trials of the verdicts.
@@ -219,16 +263,25 @@ class FreeMotion(Shown):
     constraint forces.
     """
 
-    scene: str
-    condition_trees: tuple[Tree, ...] | None = key("condition")  # as MathJSON
-    left_out: Message | None
-    motion: MotionVerdict
-    universal: UniversalControls
-    trajectory: TrajectoryControl
-    prescribed: PrescribedReactions | None
-    open: OpenAccelerations | None
-    redundant: tuple[str, ...]
-    premises: Premises
+    scene: str = entry("Name of the scene.")
+    condition_trees: tuple[Tree, ...] | None = entry(
+        "The condition (10): each expression vanishes in free motion; null where it is not written out.",
+        key="condition",
+    )
+    left_out: Message | None = entry("Why (10) is not written out; null where it is.")
+    motion: MotionVerdict = entry("Whether the motion of the scene is free, and what shows it.")
+    universal: UniversalControls = entry("Laws under which every motion is free.")
+    trajectory: TrajectoryControl = entry("The control under which the motion of the scene is free.")
+    prescribed: PrescribedReactions | None = entry("Prescribed reactions; null where the scene prescribes none.")
+    open: OpenAccelerations | None = entry(
+        "The accelerations that the forces leave open, where the mass matrix is singular; null where it is regular."
+    )
+    premises: Premises = group()
+
+    @property
+    def redundant(self) -> tuple[str, ...]:
+        """Multipliers of the constraints that follow from the others."""
+        return self.premises.redundant
 
     @cached_property
     def condition(self) -> tuple[Expr, ...] | None:
@@ -296,8 +349,7 @@ def read_free_motion(text: str) -> FreeMotion:
     HolonomError
         As `holonom.documents.read`.
     """
-    document = read(Document.FREE_MOTION, text)
-    return structured(FreeMotion, document, premises=structured(Premises, document))
+    return read(Document.FREE_MOTION, text, FreeMotion)
 
 
 def with_verdicts(found: FreeMotion) -> FreeMotion:

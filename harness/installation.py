@@ -14,6 +14,7 @@ from .formats import Document, read
 from .maxima import LIBRARY
 from .reference.maxima_help import help_files
 from .sandbox import has_sandbox
+from .structs import entry
 
 # Names of the system's packages, by the command that installs them.
 INSTALLERS = {
@@ -35,11 +36,27 @@ NEEDED = "maxima"
 class Component:
     """A program or package that Holonom uses."""
 
-    name: str
-    version: str | None  # None if it is missing or does not run; empty if it prints none
-    purpose: str  # what it serves
-    needed: bool  # nothing works without it
-    hint: str  # the command that installs it, or what else is to be done
+    name: str = entry("A program of the system or a Python package.")
+    version: str | None = entry("null if it is missing or does not run, empty if it prints none.")
+    purpose: str = entry("What it serves.")
+    needed: bool = entry("Nothing works without it.")
+    hint: str = entry("The command that installs it, or what else is to be done.")
+
+
+@dataclass(frozen=True)
+class Installation:
+    """Installed and missing components."""
+
+    components: tuple[Component, ...] = entry("All that Holonom uses.")
+
+
+@dataclass(frozen=True)
+class MaximaVersions:
+    """Versions of Maxima and its Lisp."""
+
+    maxima: str = entry("Maxima's version.")
+    lisp: str = entry("The Lisp that it runs on.")
+    lisp_version: str = entry("That Lisp's version.")
 
 
 def components() -> Iterator[Component]:
@@ -81,10 +98,10 @@ def maxima_version() -> str | None:
         None if Maxima does not run.
     """
     try:
-        document = read(Document.VERSIONS, ask(Document.VERSIONS, LIBRARY / "holonom.mac"))
+        found = read(Document.VERSIONS, ask(Document.VERSIONS, LIBRARY / "holonom.mac"), MaximaVersions)
     except HolonomError:
         return None
-    return f"{document['maxima']} on {document['lisp']} {document['lisp_version']}"
+    return f"{found.maxima} on {found.lisp} {found.lisp_version}"
 
 
 def versions() -> dict[str, str]:

@@ -18,7 +18,7 @@ from contextvars import ContextVar
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from .extras import missing_package
 
@@ -31,6 +31,29 @@ _spoken: ContextVar[str] = ContextVar("spoken", default=ENGLISH)
 
 class Message(str):
     """A message in English with its parts, for later translation."""
+
+    SHAPE: ClassVar = {"$ref": "#/$defs/Message"}
+    DEFINITIONS: ClassVar = {
+        "Message": {
+            "description": "A message, or its pattern with a placeholder such as %(order)s for each value.",
+            "anyOf": [
+                {"type": "string"},
+                {
+                    "type": "object",
+                    "properties": {
+                        "pattern": {"description": "English message with placeholders.", "type": "string"},
+                        "values": {
+                            "description": "Texts or messages in the places of the placeholders, by name.",
+                            "type": "object",
+                            "additionalProperties": {"$ref": "#/$defs/Message"},
+                        },
+                    },
+                    "required": ["pattern", "values"],
+                    "additionalProperties": False,
+                },
+            ],
+        }
+    }
 
     pattern: str  # the message with its named placeholders, ``%(name)s``
     values: dict[str, Any]  # what stands in their places; messages among them are translated with it

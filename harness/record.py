@@ -8,18 +8,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from .described import Correction, System, Values, expression
 from .documents import ask
 from .expression.trees import Tree
 from .failures import ErrorKind, HolonomError
-from .formats import Document, nothing_collected, read
+from .formats import Document, read
 from .language import translatable
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source
-from .structs import key, structured
+from .structs import entry
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Relation:
     """left = right, on every motion of the system."""
 
-    left_tree: Tree = key("left")
-    right_tree: Tree = key("right")
+    left_tree: Tree = entry("Left side.", key="left")
+    right_tree: Tree = entry("Right side.", key="right")
 
     @cached_property
     def left(self) -> "Expr":
@@ -47,90 +47,67 @@ class Relation:
 class Equation:
     """One item of the derivation."""
 
-    id: str  # what programs know it by, ``multipliers`` for example
-    number: str  # the number that the paper gives it; several items may share one
-    name: str  # what it is, for people
-    relations: tuple[Relation, ...]  # its components
+    id: str = entry("Identifier of the equation.", pattern="^[a-z_]+$")
+    number: str = entry("Number of the equation in the paper.")
+    name: str = entry("Name of the equation.")
+    relations: tuple[Relation, ...] = entry("Relations that the equation consists of.")
 
 
 LARGEST_SIZE = 10**300  # larger predicted sizes are replaced by this
 
 
-class LeftOut(NamedTuple):
+@dataclass(frozen=True)
+class LeftOut:
     """Equations that were left out."""
 
-    numbers: tuple[str, ...]  # the paper's
-    # size, limit: how long their closed forms were predicted to be, None where forces contain multipliers, and the
-    # `closed_form_size` that this is beyond
-    size: int | None
-    limit: int
+    numbers: tuple[str, ...] = entry("Equation numbers of these equations.", minItems=1)
+    size: int | None = entry("Terms and operations, as predicted; null where forces contain multipliers.")
+    limit: int = entry("closed_form_size.")
 
 
 @dataclass(frozen=True)
 class Derivation:
-    """The equations of the system with the effects named.
+    """The equations of the system with the effects named."""
 
-    `closed_form_operations` counts the operations of (8) and (11) as written, or None where they are too long to read
-    and stay a linear system, which the motion program solves. `left_out` names them. `mass_matrix` is ``regular``, or
-    ``supported`` where it is singular and the constraints make up for it: A + J^T J is in its place in what is solved,
-    and J^T times (7) is added to the equations of motion. `redundant` are the multipliers of the constraints that
-    follow from the others: what is solved, (4), (5) and (8) to (11), is solved without these constraints.
-    """
-
-    effects: tuple[str, ...]
-    equations: tuple[Equation, ...]
-    mass_matrix: str
-    redundant: tuple[str, ...]
-    closed_form_operations: int | None
-    left_out: LeftOut | None = None
+    effects: tuple[str, ...] = entry("Effects that the derivation contains.")
+    equations: tuple[Equation, ...] = entry("Equations in the order of the paper.")
+    mass_matrix: str = entry(
+        "Regular, or singular and supported: (4), (5), (8) to (11) have A + J^T J in place of A.",
+        enum=["regular", "supported"],
+    )
+    redundant: tuple[str, ...] = entry(
+        "Multipliers of the constraints that follow from the others: (4), (5) and (8) to (11) are solved without these."
+    )
+    closed_form_operations: int | None = entry(
+        "Operations of (8) and (11) as written; null where they stay a linear system."
+    )
+    left_out: LeftOut | None = entry("Equations of the derivation that are not made; null where all are.", None)
 
 
 @dataclass(frozen=True)
 class Scene:
-    """A system with control law, parameter values and initial state.
+    """A system with control law, parameter values and initial state."""
 
-    Parameters
-    ----------
-    name, title : str
-        The name it is assigned to and its title.
-    derivation : int
-        Index of its derivation in the record.
-    effects : tuple of str
-        Names of the effects it calls for.
-    control_law, parameter_values : mapping of str to Expr
-        The controls as functions of the time and the parameters as numbers, by name.
-    initial_state : mapping of str to Expr
-        All coordinates and velocities at the initial time, by name.
-    given : tuple of str
-        Coordinates and velocities whose initial values the scene gives. The others follow from the constraints.
-    correction : Correction or None
-        The largest correction of a given value that violated the constraints in its last digits.
-    span_trees : pair of trees or None
-        First and last time.
-    observe : tuple of str
-        Kinds of quantities to compute.
-    equations : tuple of Equation
-        The equations of its initial motion.
-    left_out : LeftOut or None
-        Equations of the initial motion that were left out.
-    law_around_start : bool
-        True if the control law is switched, as by a table, and recorded in its form around the initial time.
-    """
-
-    name: str
-    title: str
-    derivation: int
-    effects: tuple[str, ...]
-    control_law: Values
-    parameter_values: Values
-    initial_state: Values
-    given: tuple[str, ...]
-    correction: Correction | None
-    span_trees: tuple[Tree, Tree] | None = key("time_span")
-    observe: tuple[str, ...]
-    equations: tuple[Equation, ...]
-    left_out: LeftOut | None = None
-    law_around_start: bool = False
+    name: str = entry("Name of the scene.")
+    title: str = entry("Title of the scene.")
+    derivation: int = entry("Index of the scene's derivation.", minimum=0)
+    effects: tuple[str, ...] = entry("Effects that the scene contains.")
+    control_law: Values = entry("Control law of each control.")
+    parameter_values: Values = entry("Value of each parameter.")
+    initial_state: Values = entry("Initial coordinates and velocities.")
+    given: tuple[str, ...] = entry(
+        "The coordinates and velocities whose initial values the scene gives; the others are solved for."
+    )
+    correction: Correction | None = entry(
+        "The initial value that had to be corrected most to fit the constraints, and by how much."
+    )
+    span_trees: tuple[Tree, Tree] | None = entry("First and last time.", key="time_span")
+    observe: tuple[str, ...] = entry("Quantities to observe.")
+    equations: tuple[Equation, ...] = entry("Equations of the initial motion.")
+    left_out: LeftOut | None = entry("Equations of the scene that are not made; null where all are.", None)
+    law_around_start: bool = entry(
+        "Whether the control law is switched, as by a table, and given as it is around the initial time.", False
+    )
 
     @cached_property
     def time_span(self) -> "tuple[Expr, Expr] | None":
@@ -142,10 +119,10 @@ class Scene:
 class Record:
     """All results of Maxima's derivation for one scene file."""
 
-    maxima: str
-    system: System
-    derivations: tuple[Derivation, ...]
-    scenes: tuple[Scene, ...]
+    maxima: str = entry("Version of Maxima.")
+    system: System = entry("The system as it is described.")
+    derivations: tuple[Derivation, ...] = entry("The equations, for each selection of effects that a scene calls for.")
+    scenes: tuple[Scene, ...] = entry("The scenes, with the equations of their initial motion.")
 
 
 def derived_record(
@@ -176,7 +153,6 @@ def derived_record(
     return read_record(ask(Document.RECORD, file, settings=settings, limits=limits))
 
 
-@nothing_collected()
 def read_record(text: str) -> Record:
     """Read a derivation record.
 
@@ -196,7 +172,7 @@ def read_record(text: str) -> Record:
     HolonomError
         The text is not JSON, or does not have the shape of a record.
     """
-    record = structured(Record, read(Document.RECORD, text))
+    record = read(Document.RECORD, text, Record)
     for scene in record.scenes:
         if scene.derivation >= len(record.derivations):
             raise HolonomError(

@@ -1,33 +1,82 @@
-"""Typed values of documents: dataclasses read from JSON by their annotations.
+"""Typed values of documents: dataclasses from and to JSON, by their annotations.
 
-A document has the shape of its schema when it comes here (`holonom.formats.read`). It is not checked a second time.
+`holonom.schema` makes the schema of a document from the same dataclass.
 """
 
-from collections.abc import Callable, Mapping
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import MISSING, field, fields, is_dataclass
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from types import NoneType, UnionType
-from typing import Any, TypeVar, get_args, get_origin
+from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin
 
 Struct = TypeVar("Struct")
 AS_IT_IS = (bool, int, str)
+DOUBLE = 8  # bytes
 
 
-def key(name: str, default: Any = MISSING) -> Any:
-    """Make a field of a dataclass that has another name in the document.
+class Entry(NamedTuple):
+    """An entry of an object in a document."""
+
+    name: str  # of the attribute
+    key: str | None  # its name in the document; None for fields that are in the same object
+    kind: Any
+    text: str  # its description
+    rules: Mapping[str, Any] = {}  # JSON Schema beyond the type
+    required: bool = True
+    computed: bool = False  # written, not read
+    optional: bool = False  # not written if it is None
+
+
+def entry(
+    text: str, default: Any = MISSING, *, key: str = "", optional: bool = False, compare: bool = True, **rules: Any
+) -> Any:
+    """Make a field of a dataclass an entry of a document.
 
     Parameters
     ----------
-    name : str
-        Name in the document.
+    text : str
+        Description.
     default : object
-        Value of the field if the document does not have it.
+        Value if the document does not have it. What is callable makes it.
+    key : str
+        Name in the document, if it is another than the field's.
+    optional : bool
+        True if None is not written.
+    compare : bool
+        Whether the field counts when two objects are compared.
+    **rules : object
+        JSON Schema beyond the type.
 
     Returns
     -------
     dataclasses.Field
     """
-    return field(default=default, metadata={"key": name})
+    stated = {"text": text, "rules": rules, "optional": optional} | ({"key": key} if key else {})
+    made = {"default_factory" if callable(default) else "default": default}
+    return field(metadata=stated, compare=compare, **made)
+
+
+def computed(text: str, key: str = "", **rules: Any) -> Callable[[Struct], Struct]:
+    """Make a property an entry of a document, which is written and not read.
+
+    Parameters
+    ----------
+    text, key, **rules : str, str, object
+        As for `entry`.
+
+    Returns
+    -------
+    callable
+        Decorator of the property's function.
+    """
+
+    def marked(function: Struct) -> Struct:
+        function.entry = text, key, rules
+        return function
+
+    return marked
 
 
 def group() -> Any:
@@ -67,12 +116,108 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
     return kind(**read, **given)
 
 
+class Documented:
+    """A result that is published as a document."""
+
+    def document(self) -> dict[str, Any]:
+        """Return the content of the JSON document without format and version.
+
+        Returns
+        -------
+        dict
+        """
+        return written(self)
+
+
+def written(value: Any, text: Callable[[Any], str] = str) -> Any:
+    """Return a value as JSON holds it.
+
+    Parameters
+    ----------
+    value : object
+        Dataclasses and named tuples become objects of their entries, arrays lists, and complex numbers pairs.
+    text : callable
+        Takes values of other classes to text.
+
+    Returns
+    -------
+    object
+    """
+    if value is None or type(value) in (str, int, float, bool):
+        return value
+    if isinstance(value, str):
+        return str(value)
+    if isinstance(value, complex):
+        return [float(value.real), float(value.imag)]
+    if isinstance(value, Mapping):
+        return {name: written(part, text) for name, part in value.items()}
+    if stated := entries_of(type(value)):
+        return dict(_written(value, stated, text))
+    if hasattr(value, "dtype") and value.dtype.kind in "fiub" and value.dtype.itemsize <= DOUBLE:
+        return value.tolist()
+    if getattr(value, "ndim", 0):
+        return [written(part, text) for part in value]
+    return [written(part, text) for part in value] if isinstance(value, tuple | list) else text(value)
+
+
+def _written(value: Any, stated: tuple[Entry, ...], text: Callable[[Any], str]) -> Iterator[tuple[str, Any]]:
+    for each in stated:
+        part = getattr(value, each.name)
+        if each.key is None:
+            yield from written(part, text).items()
+        elif part is not None or not each.optional:
+            yield each.key, written(part, text)
+
+
+@cache
+def entries_of(kind: type) -> tuple[Entry, ...]:
+    """Return the entries of an object in a document, those of properties last.
+
+    Parameters
+    ----------
+    kind : type
+        Dataclass, or named tuple whose fields are ``Annotated[type, "description"]``.
+
+    Returns
+    -------
+    tuple of Entry
+        Empty for any other class.
+    """
+    if hasattr(kind, "_fields"):
+        stated = {name: get_args(annotation) for name, annotation in kind.__annotations__.items()}
+        return tuple(Entry(name, name, inside[0], inside[1]) for name, inside in stated.items() if inside)
+    return tuple(_field_entries(kind)) if is_dataclass(kind) else ()
+
+
+def _field_entries(kind: type) -> Iterator[Entry]:
+    for each in fields(kind):
+        stated = dict(each.metadata)
+        if "text" in stated or stated.get("key", "") is None:
+            required = each.default is MISSING and each.default_factory is MISSING
+            place = stated.pop("key", each.name)
+            if _type(kind, each.type) is None and not stated.get("rules"):
+                raise TypeError(f"{kind.__name__}.{each.name}: unknown type {each.type}")
+            yield Entry(each.name, place, _type(kind, each.type), **{"text": ""} | stated, required=required)
+    for name, each in vars(kind).items():
+        function = each.func if isinstance(each, cached_property) else getattr(each, "fget", None)
+        if hasattr(function, "entry"):
+            text, place, rules = function.entry
+            yield Entry(name, place or name, function.__annotations__.get("return"), text, rules, computed=True)
+
+
 @cache
 def _fields(kind: type) -> tuple[tuple[str, str | None, Any], ...]:
     """Return name, key and annotation of each field. The key of a group is None."""
     if is_dataclass(kind):
-        return tuple((each.name, each.metadata.get("key", each.name), each.type) for each in fields(kind))
+        places = ((each.name, each.metadata.get("key", each.name), each.type) for each in fields(kind))
+        return tuple((name, place, _type(kind, annotation)) for name, place, annotation in places)
     return tuple((name, name, annotation) for name, annotation in kind.__annotations__.items())
+
+
+def _type(kind: type, annotation: Any) -> Any:
+    """Return a type that may be stated as text, None if only type checkers know it."""
+    with suppress(NameError):
+        return eval(annotation, vars(sys.modules[kind.__module__])) if isinstance(annotation, str) else annotation
 
 
 def _value(kind: Any, content: Any) -> Any:
@@ -95,7 +240,9 @@ def reader_of(kind: Any) -> Callable[[Any], Any] | None:
         None if the part is unchanged.
     """
     origin, inside = get_origin(kind), get_args(kind)
-    if origin is UnionType:
+    if origin is Annotated:
+        return reader_of(inside[0])
+    if origin in (UnionType, Union):
         reader = reader_of(inside[0]) if len(inside) == 2 and inside[1] is NoneType else None
         return reader and (lambda content: None if content is None else reader(content))
     if origin is tuple:

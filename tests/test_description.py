@@ -10,11 +10,11 @@ from refusing import refused
 
 import holonom
 from holonom import source
-from holonom.described import expression
 from holonom.description import Description, read_description
 from holonom.documents import ask
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Document, read
+from holonom.record import Record
 from holonom.source import Source, describe
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -191,6 +191,6 @@ def test_the_size_of_closed_forms_is_a_setting_of_every_file(write_scene, tmp_pa
 
 
 def test_the_record_has_the_system_of_the_description(switched):
-    record = read(Document.RECORD, ask(Document.RECORD, Source(switched.file)))
-    assert record["system"]["constraints"] == switched.content["system"]["constraints"]
-    assert expression(record["system"]["constraints"][0]) == switched.system.constraints[0]
+    record = read(Document.RECORD, ask(Document.RECORD, Source(switched.file)), Record)
+    assert list(record.system.constraint_trees) == switched.content["system"]["constraints"]
+    assert record.system.constraints[0] == switched.system.constraints[0]

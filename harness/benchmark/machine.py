@@ -8,6 +8,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from ..processes import usable_cores
+from ..structs import entry
 
 PROCESSORS = Path("/proc/cpuinfo")
 PACKAGES = ("heyoka", "numpy", "scipy", "scikit-sundae", "mpmath")
@@ -17,11 +18,11 @@ PACKAGES = ("heyoka", "numpy", "scipy", "scikit-sundae", "mpmath")
 class Machine:
     """A machine on a day."""
 
-    processor: str
-    cores: int  # that this process may use
-    system: str
-    versions: Mapping[str, str]  # of Python and of the packages that were measured
-    date: str  # ISO 8601
+    processor: str = entry("Name of the processor.")
+    cores: int = entry("Number of processor cores that the process may use.", minimum=1)
+    system: str = entry("Operating system.")
+    versions: Mapping[str, str] = entry("Version of each program, by its name.")
+    date: str = entry("Date of the measurement, ISO 8601.", format="date")
 
     def __str__(self) -> str:
         versions = ", ".join(f"{name} {number}" for name, number in self.versions.items())

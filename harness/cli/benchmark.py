@@ -1,6 +1,5 @@
 """The commands that measure: accuracy, stability."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +13,6 @@ from .options import asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
-    from ..benchmark.hard_cases.case import CaseReport
     from ..program.request import Request
 
 
@@ -36,14 +34,15 @@ def accuracy(
 
     The motion of a SCENE is integrated at coarse to fine tolerances. The report recommends methods.
     """
-    from ..benchmark.work_precision.study import Plan, study, study_document
+    from ..benchmark.work_precision.study import Plan, study
     from ..display.measurements import show_study
     from ..display.progress import progress
+    from ..formats import Publication, published
 
     plan = Plan(**options)
     with progress("methods", plan.steps) as advance:
         done = study(scene_file, request, limits, plan, advance)
-    present(study_document(done), json_file, show_study, done)
+    present(published(Publication.ACCURACY, done), json_file, show_study, done)
     if plot_file is not None:
         from ..figures.benchmark import study_figure
         from ..figures.style import Picture
@@ -64,7 +63,7 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
 
     The report states the correct digits of each method, and advice.
     """
-    from ..benchmark.hard_cases.case import Extent
+    from ..benchmark.hard_cases.case import CaseReports, Extent
     from ..benchmark.hard_cases.register import REGISTER, examine_all
     from ..display.measurements import show_stability
     from ..display.progress import progress
@@ -73,26 +72,10 @@ def stability(short: bool, plot_file: Path | None, json_file: Path | None) -> in
     extent = Extent.SHORT if short else Extent.FULL
     with progress("Hard cases", len(REGISTER)) as done:
         reports = examine_all(extent, done)
-    content = {"cases": [_report_document(report) for report in reports]}
-    present(published(Publication.HARD_CASES, content), json_file, show_stability, reports)
+    present(published(Publication.HARD_CASES, CaseReports(tuple(reports))), json_file, show_stability, reports)
     if plot_file is not None:
         from ..figures.benchmark import stability_figure
         from ..figures.style import Picture
 
         Picture(stability_figure(reports)).save(plot_file)
     return FAILED if any(report.fails for report in reports) else 0
-
-
-def _report_document(report: "CaseReport") -> dict[str, Any]:
-    from ..explanations import advice
-
-    sweep = report.sweep
-    return {
-        "case": report.case.name,
-        "kind": report.case.kind,
-        "truth": report.case.truth,
-        "results": [asdict(result) for result in report.results],
-        "sweep": sweep and asdict(sweep),
-        "advice": advice(report.case.kind),
-        "fails": report.fails,
-    }

@@ -1,7 +1,7 @@
 """The commands that derive and compare: derive, check, errata."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -198,13 +198,13 @@ def errata(json_file: Path | None, svg_file: Path | None, language: str) -> int:
     Every equation printed in the paper is compared with the derived one.
     """
     from ..display.derivation import draw_errata, show_errata
+    from ..errata import Errata
     from ..errata import errata as compare
     from ..formats import Document, published
 
     equations = compare()
-    content = {"equations": [asdict(equation) for equation in equations]}
     with speaking(language):
-        present(published(Document.ERRATA, content), json_file, show_errata, equations)
+        present(published(Document.ERRATA, Errata(equations)), json_file, show_errata, equations)
         if svg_file is not None:
             publish(draw_errata(equations), svg_file)
     return 0
@@ -218,32 +218,11 @@ def _publish_document(record: "Record", tex_file: Path | None) -> None:
 
 
 def _report_document(scene: str, report: "CheckReport") -> dict[str, Any]:
-    from ..crosscheck.report import Verdict
+    from ..crosscheck.report import CheckedFile
     from ..display.derivation import why_left_out
     from ..formats import Publication, published
 
-    content = {
-        "scene": scene,
-        "equations": [
-            {
-                "id": found.id,
-                "number": found.number,
-                "name": found.name,
-                "derivation": found.derivation,
-                "scene_name": found.scene,
-                "verdict": found.verdict,
-                "digits": found.digits,
-                "points": found.points,
-                "detail": why_left_out(found.left_out) if found.left_out else found.detail,
-            }
-            for found in report.verdicts
-        ],
-        "made": len(report.verdicts) - report.count(Verdict.LEFT_OUT),
-        "left_out": report.count(Verdict.LEFT_OUT),
-        "proved": report.count(Verdict.PROVED),
-        "agreed": report.count(Verdict.PROVED, Verdict.AGREES, Verdict.SAMPLED),
-        "undecided": report.count(Verdict.UNDECIDED),
-        "disagreements": report.disagreements,
-        "seed": report.seed,
-    }
-    return published(Publication.CHECK, content)
+    verdicts = (
+        replace(each, detail=why_left_out(each.left_out)) if each.left_out else each for each in report.verdicts
+    )
+    return published(Publication.CHECK, CheckedFile(scene, replace(report, verdicts=tuple(verdicts))))

@@ -1,7 +1,6 @@
 """The command about free motion: free."""
 
-from collections.abc import Mapping
-from dataclasses import asdict
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -60,50 +59,50 @@ def _import_readers() -> None:
 def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
     from ..display.free_motion import formula, power_series
     from ..formats import Publication, published
+    from ..free_document import (
+        ConditionText,
+        FreeMotionText,
+        LawCheck,
+        PrescribedText,
+        TrajectoryText,
+        UniversalText,
+    )
+
+    def texts(formulas: Iterable[Any]) -> tuple[str, ...]:
+        return tuple(map(formula, formulas))
 
     def law_text(law: Mapping[str, Any]) -> dict[str, str]:
-        return {control: formula(value) for control, value in law.items()}
+        return dict(zip(law, texts(law.values()), strict=True))
 
-    motion, universal, trajectory, prescribed = found.motion, found.universal, found.trajectory, found.prescribed
-    content = {
-        "scene": found.scene,
-        "condition": None if found.condition is None else [formula(each) for each in found.condition],
-        "left_out": found.left_out,
-        "motion": {
-            "verdict": motion.verdict,
-            "for": motion.states,
-            "evidence": motion.evidence,
-            "order": motion.order,
-            "first": motion.first and asdict(motion.first),
-        },
-        "universal": {
-            "verdict": universal.verdict,
-            "laws": [law_text(law.controls) for law in universal.laws],
-            "constants": [law.constants for law in universal.laws],
-            "free": [law.free for law in universal.laws],
-            "positive": [[formula(each) for each in law.positive] for law in universal.laws],
-            "checks": [
-                {"verdict": law.check.verdict, "digits": law.check.digits, "states": law.check.points}
-                for law in universal.laws
-            ],
-            "conditions": [
-                {"expression": formula(each.expression), "place": formula(each.place), "effects": each.effects}
+    universal, trajectory, prescribed = found.universal, found.trajectory, found.prescribed
+    laws, order = universal.laws, trajectory.order
+    content = FreeMotionText(
+        found.scene,
+        None if found.condition is None else texts(found.condition),
+        found.left_out,
+        found.motion,
+        UniversalText(
+            universal.verdict,
+            laws=tuple(law_text(law.controls) for law in laws),
+            constants=tuple(law.constants for law in laws),
+            free=tuple(law.free for law in laws),
+            positive=tuple(texts(law.positive) for law in laws),
+            checks=tuple(LawCheck(law.check.verdict, law.check.digits, law.check.points) for law in laws),
+            conditions=tuple(
+                ConditionText(formula(each.expression), formula(each.place), each.effects)
                 for each in universal.conditions
-            ],
-            "generic": universal.generic,
-            "reason": universal.reason,
-        },
-        "trajectory": {
-            "kind": trajectory.kind,
-            "law": law_text(trajectory.law) or None if trajectory.order is None else None,
-            "series": None
-            if trajectory.order is None
-            else {u: power_series(value) for u, value in trajectory.law.items()} | {"order": trajectory.order},
-            "free": trajectory.free,
-            "samples": trajectory.samples or None,
-            "reason": trajectory.reason,
-        },
-        "prescribed": prescribed
-        and {"reactions": law_text(prescribed.reactions), "controls": law_text(prescribed.controls)},
-    }
+            ),
+            generic=universal.generic,
+            reason=universal.reason,
+        ),
+        TrajectoryText(
+            trajectory.kind,
+            law=law_text(trajectory.law) or None if order is None else None,
+            series=order and {u: power_series(value) for u, value in trajectory.law.items()} | {"order": order},
+            free=trajectory.free,
+            samples=trajectory.samples or None,
+            reason=trajectory.reason,
+        ),
+        prescribed and PrescribedText(law_text(prescribed.reactions), law_text(prescribed.controls)),
+    )
     return published(Publication.FREE, content)

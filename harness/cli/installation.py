@@ -1,6 +1,5 @@
 """The commands about the installation: doctor, maxima-path."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -25,10 +24,10 @@ def doctor(json_file: Path | None) -> int:
     The report names the command that installs each missing component.
     """
     from ..formats import Publication, published
-    from ..installation import components
+    from ..installation import Installation, components
 
     found = list(components())
-    document = published(Publication.DOCTOR, {"components": [asdict(each) for each in found]})
+    document = published(Publication.DOCTOR, Installation(tuple(found)))
     present(document, json_file, show_components, found)
     return MISSING if any(each.needed and each.version is None for each in found) else 0
 

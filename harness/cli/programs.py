@@ -1,6 +1,5 @@
 """The commands about motion programs: program, effects."""
 
-from dataclasses import asdict
 from pathlib import Path
 
 import click
@@ -106,5 +105,5 @@ def effects(
     from ..program.effects import scene_costs
 
     costs = scene_costs(scene_file, request, limits)
-    present(published(Publication.COSTS, asdict(costs)), json_file, show_costs, costs)
+    present(published(Publication.COSTS, costs), json_file, show_costs, costs)
     return 0

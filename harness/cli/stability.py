@@ -51,7 +51,7 @@ def linearize(
     found = _described(scene_file, request, limits).linearize(**options)
     if plot_file is not None:
         found.plot().save(plot_file)
-    present(published(Publication.LINEARIZED, found.document()), json_file, show_linearization, found)
+    present(published(Publication.LINEARIZED, found), json_file, show_linearization, found)
     return 0
 
 
@@ -77,7 +77,7 @@ def linearize_along(
     from ..formats import Publication, published
 
     found = _described(scene_file, request, limits).linearize_along(**options)
-    present(published(Publication.LINEARIZED_ALONG, found.document()), json_file, show_linearized_motion, found)
+    present(published(Publication.LINEARIZED_ALONG, found), json_file, show_linearized_motion, found)
     return 0
 
 
@@ -131,13 +131,13 @@ def equilibria(
     scene = _described(scene_file, request, limits)
     if over is None:
         found = scene.equilibria(**options, **values)
-        present(published(Publication.EQUILIBRIA, found.document()), json_file, show_equilibria, found)
+        present(published(Publication.EQUILIBRIA, found), json_file, show_equilibria, found)
         return 0
     axes = read_axes([over], [], [], None, None)
     branches = scene.branches(axes.names[0], axes.numbers(0, axes.rows)[0].tolist(), **options, **values)
     if plot_file is not None:
         branches.plot().save(plot_file)
-    documents = [published(Publication.EQUILIBRIA, each) for each in branches.documents()]
+    documents = [published(Publication.EQUILIBRIA, each) for each in branches]
     present(documents, json_file, show_branches, branches)
     return 0
 

@@ -1,7 +1,5 @@
 """The report of a cross-check: one verdict an equation, and their counts."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -10,6 +8,7 @@ from typing import NamedTuple
 from ..language import translatable
 from ..record import LeftOut
 from ..shown import Shown
+from ..structs import computed, entry, group
 
 
 class Verdict(StrEnum):
@@ -66,19 +65,19 @@ class Place(NamedTuple):
 class EquationVerdict:
     """The verdict on one equation of the record."""
 
-    # id, number, name: the equation's id, empty where it was not made; its number in the paper; the record's name for
-    # it
-    id: str
-    number: str
-    name: str
-    derivation: int  # the derivation that it belongs to: its place in the record, from 0
-    scene: str | None  # name of the scene the equation belongs to; None for an equation of a derivation
-    verdict: Verdict
-    # digits, points: significant digits demanded and random points compared; None where nothing was evaluated
-    digits: int | None
-    points: int | None
-    # for a disagreement the relation, the difference and the point; for what is undecided the reason; else empty
-    detail: str
+    id: str = entry("As in the record, empty where the equation was not made.")
+    number: str = entry("The equation number; several equations may share one.")
+    name: str = entry("Name of the equation.")
+    derivation: int = entry("The derivation that the equation belongs to: its place in the record.", minimum=0)
+    scene: str | None = entry(
+        "The scene that the equation belongs to; null where it is the system's.", key="scene_name"
+    )
+    verdict: Verdict = entry("Result of the comparison.")
+    digits: int | None = entry("Significant digits to which both sides agree; null where nothing was evaluated.")
+    points: int | None = entry("Random points at which they were compared; null where nothing was evaluated.")
+    detail: str = entry(
+        "For a disagreement the relation, the difference and the point; for what is undecided the reason; else empty."
+    )
     is_recorded: bool = True  # whether the record holds the equation
     left_out: LeftOut | None = None  # why the equation was not made
 
@@ -112,18 +111,14 @@ def verdict_on(
 
 @dataclass(frozen=True, repr=False)
 class CheckReport(Shown):
-    """Verdicts on all equations of a record, in the record's order.
+    """Verdicts on all equations of a record, in the record's order."""
 
-    Attributes
-    ----------
-    seed : str
-        Draws the same random points again.
-    """
+    verdicts: tuple[EquationVerdict, ...] = entry(
+        "The verdict on each equation, in the record's order.", key="equations"
+    )
+    seed: str = entry("Draws the same random points again, as `--seed`.")
 
-    verdicts: tuple[EquationVerdict, ...]
-    seed: str
-
-    def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> CheckReport:
+    def with_verdicts(self, verdicts: Iterable[EquationVerdict]) -> "CheckReport":
         """Return the report with further verdicts.
 
         Parameters
@@ -138,6 +133,37 @@ class CheckReport(Shown):
         return replace(self, verdicts=(*self.verdicts, *verdicts))
 
     @property
+    @computed("Equations that the record holds.", "made", minimum=0)
+    def _made(self) -> int:
+        return len(self.verdicts) - self._left_out
+
+    @property
+    @computed("Equations that were not made.", "left_out", minimum=0)
+    def _left_out(self) -> int:
+        return self.count(Verdict.LEFT_OUT)
+
+    @property
+    @computed("Equations whose difference is shown to be identically zero.", "proved", minimum=0)
+    def _proved(self) -> int:
+        return self.count(Verdict.PROVED)
+
+    @property
+    @computed("Equations that are proved or agree, those that agree at points alone among them.", "agreed", minimum=0)
+    def _agreed(self) -> int:
+        return self.count(Verdict.PROVED, Verdict.AGREES, Verdict.SAMPLED)
+
+    @property
+    @computed(
+        "Equations of which it is not known whether they agree: too few points with values on both sides, a side of a "
+        "branch that no point reached, or a time limit.",
+        "undecided",
+        minimum=0,
+    )
+    def _undecided(self) -> int:
+        return self.count(Verdict.UNDECIDED)
+
+    @property
+    @computed("Number of equations that disagree or are missing.", minimum=0)
     def disagreements(self) -> int:
         """Number of equations that disagree or are missing."""
         return self.count(Verdict.DISAGREES)
@@ -155,3 +181,11 @@ class CheckReport(Shown):
         int
         """
         return sum(found.verdict in verdicts for found in self.verdicts)
+
+
+@dataclass(frozen=True)
+class CheckedFile:
+    """Verdicts on the equations of a scene file."""
+
+    scene: str = entry("The scene file.")
+    report: CheckReport = group()

@@ -19,6 +19,10 @@ from ..failures import ErrorKind, HolonomError
 from ..formats import Publication, require
 from ..number_texts import number, numbers
 from ..program.differentiation import derivative_name
+from ..series.power_series import SeriesDocument
+from ..stability.along import LinearizedMotion
+from ..stability.equilibria import Equilibria
+from ..stability.linearization import Linearization
 from .compared_values import differing
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
@@ -56,7 +60,7 @@ def read_result(file: Path) -> Content:
     except (ValueError, KeyError, TypeError, RecursionError, StopIteration):
         names = ", ".join(f"holonom-{each}" for each in VERIFIERS)
         raise HolonomError(ErrorKind.NOT_A_DOCUMENT, file, names) from None
-    require(kind, content)
+    require(kind, content, VERIFIERS[kind][0])
     return content
 
 
@@ -78,7 +82,7 @@ def verify_result(description: Description, content: Content) -> EquationVerdict
     if name not in {scene.name for scene in description.scenes}:
         found = CheckResult(Verdict.DISAGREES, None, None, "the description has no such scene")
     else:
-        found = VERIFIERS[kind](description, content)
+        found = VERIFIERS[kind][1](description, content)
         if found.verdict is Verdict.AGREES:
             found = found._replace(detail=_unchecked(kind, content))
     return verdict_on(Place(0, name), Item("result", "", f"result: {kind}"), found)
@@ -120,11 +124,11 @@ def _verify_derivatives(description: Description, content: Content) -> CheckResu
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 
-VERIFIERS: Mapping[Publication, Callable[[Description, Content], CheckResult]] = {
-    Publication.LINEARIZED: _verify_linearization,
-    Publication.LINEARIZED_ALONG: _verify_linearized_motion,
-    Publication.EQUILIBRIA: _verify_equilibria,
-    Publication.SERIES: _verify_derivatives,
+VERIFIERS: Mapping[Publication, tuple[type, Callable[[Description, Content], CheckResult]]] = {
+    Publication.LINEARIZED: (Linearization, _verify_linearization),
+    Publication.LINEARIZED_ALONG: (LinearizedMotion, _verify_linearized_motion),
+    Publication.EQUILIBRIA: (Equilibria, _verify_equilibria),
+    Publication.SERIES: (SeriesDocument, _verify_derivatives),
 }
 
 

@@ -18,9 +18,10 @@ from xml.etree.ElementTree import Element, SubElement
 import numpy as np
 from numpy.typing import NDArray
 
+from ..described import Shape
 from ..hidden import visible
 from ..language import gettext
-from ..program.drawing import Drawing, Shape
+from ..program.drawing import Drawing
 from .style import BLUE, INK_RULE, VERMILION
 
 if TYPE_CHECKING:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..described import Shape
 from ..failures import ErrorKind, HolonomError
 from ..files import write_whole
 from ..hidden import visible_line
 from ..language import translatable
-from ..program.drawing import Shape
 from ..temporary import private_directory
 from .drawing import Film, animation, extents, film_of
 from .style import BLUE, VERMILION, figure_style, new_figure

@@ -5,38 +5,29 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from enum import StrEnum
+from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..described import Shape
+from ..structs import entry
 from .motion_program import Program
-from .numpy_function import NumpyFunction
 from .table import Table
-from .table_numbers import pieces_of_tables
 
-
-class Shape(StrEnum):
-    """A shape of a drawing."""
-
-    POINT = "point"
-    SEGMENT = "segment"
-    POLYLINE = "polyline"
-    CIRCLE = "circle"
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
 
 
 @dataclass(frozen=True)
 class Drawing:
     """The drawing of a system."""
 
-    shapes: tuple[Shape, ...]
-    # of t, the coordinates and more; ``drawing[i,k]`` is the k-th number of the i-th shape, indices from 1
-    program: Program
+    shapes: tuple[Shape, ...] = entry("Shapes of the drawing.")
+    program: Program = entry("Program that computes the numbers of the shapes.")
     tables: tuple[Table, ...] = ()  # whose polynomials it takes
     # of shapes, numbered from 1: time after which each is absent
     ends: Mapping[int, float] = field(default_factory=dict)
 
-    def numbers(self, times: NDArray, coordinates: Mapping[str, NDArray]) -> list[NDArray[np.float64]]:
+    def numbers(self, times: "NDArray", coordinates: "Mapping[str, NDArray]") -> "list[NDArray[np.float64]]":
         """Return the numbers of each shape along a motion.
 
         Parameters
@@ -51,6 +42,11 @@ class Drawing:
         list of ndarray, shape (k, numbers of the shape)
             x and y of its places in their order, then, of a circle, the radius. nan where a shape is absent.
         """
+        import numpy as np
+
+        from .numpy_function import NumpyFunction
+        from .table_numbers import pieces_of_tables
+
         known = {"t": times, **coordinates}
         for table, pieces in zip(self.tables, pieces_of_tables(self.tables), strict=True):
             known |= dict(zip(table.inputs, pieces.at(times), strict=True))

@@ -22,7 +22,7 @@ from ..language import translatable
 from ..sandbox import Limits
 from ..shown import Shown
 from ..source import Source
-from ..structs import key, structured
+from ..structs import entry
 from .c_function import compile_c
 from .motion_program import Program
 from .numpy_function import NumpyFunction
@@ -52,48 +52,53 @@ class Measure(StrEnum):
 class TermProgram:
     """A term of one of the paper's equations."""
 
-    equation: str
-    name: str = key("term")
-    program: Program | None  # it computes the term for every s, or beta; None where the term is identically zero
+    equation: str = entry("The equation number.")
+    name: str = entry("Name of the term.", key="term")
+    program: Program | None = entry("Program of the term, or null where there is none.")
 
 
 @dataclass(frozen=True)
 class EffectProgram:
     """An effect of the system."""
 
-    name: str
-    called: bool  # whether the scene calls for it
-    # the program of the scene that differs in this effect alone; None where that scene cannot be solved
-    otherwise: Program | None
+    name: str = entry("Name of the effect.")
+    called: bool = entry("True if the scene calls for the effect.")
+    otherwise: Program | None = entry("Program that differs in this effect, or null.")
 
 
 @dataclass(frozen=True)
 class PairProgram:
     """Two switches of the system."""
 
-    names: tuple[str, str]
-    otherwise: Program | None  # the program of the scene that differs in both; None where that scene cannot be solved
+    names: tuple[str, str] = entry("Names of the two effects.", minItems=2)
+    otherwise: Program | None = entry("Program that differs in both effects, or null.")
 
 
 @dataclass(frozen=True)
 class Costs:
     """The programs by which a scene's costs are found."""
 
-    program: Program
-    terms: tuple[TermProgram, ...]
-    effects: tuple[EffectProgram, ...]
-    pairs: tuple[PairProgram, ...] = ()
+    program: Program = entry("The scene's motion program.")
+    terms: tuple[TermProgram, ...] = entry(
+        "Each term of (3) and (7) as a program of its own, or null where it is absent by structure."
+    )
+    effects: tuple[EffectProgram, ...] = entry(
+        "For each effect the program of the scene that differs in it alone, or null where there is none."
+    )
+    pairs: tuple[PairProgram, ...] = entry(
+        "For each pair of switches the program of the scene that differs in both, or null where there is none.", ()
+    )
 
 
 @dataclass(frozen=True)
 class TermCost:
     """The cost of a term, zero if it is absent."""
 
-    equation: str
-    term: str
-    status: Status
-    operations: int
-    seconds: float
+    equation: str = entry("The equation number.")
+    term: str = entry("Name of the term.")
+    status: Status = entry("Presence of the term.")
+    operations: int = entry("Operations of the term.", minimum=0)
+    seconds: float = entry("For one evaluation; 0 where the term is absent.", minimum=0)
 
 
 @dataclass(frozen=True)
@@ -103,23 +108,27 @@ class EffectCost:
     It is None if the equations cannot be solved without or with it.
     """
 
-    name: str
-    status: Status
-    operations: int | None
-    seconds: float | None
+    name: str = entry("Name of the effect.")
+    status: Status = entry("Presence of the effect.")
+    operations: int | None = entry(
+        "What it adds, or would add; null where nothing can be solved without it, or with it."
+    )
+    seconds: float | None = entry("The same in time, for one evaluation.")
 
 
 @dataclass(frozen=True, repr=False)
 class MeasuredCosts(Shown):
     """The costs of a scene, in operations and in time for one evaluation."""
 
-    scene: str | None
-    operations: int
-    seconds_per_evaluation: float
-    measured_in: Measure
-    terms: tuple[TermCost, ...]
-    effects: tuple[EffectCost, ...]
-    pairs: tuple[EffectCost, ...] = ()  # of switches a and b, named a*b
+    scene: str | None = entry("null where the file holds a system alone.")
+    operations: int = entry("Operations of the scene's motion program.", minimum=0)
+    seconds_per_evaluation: float = entry(
+        "Time for one evaluation of the motion program, the shortest measured.", exclusiveMinimum=0
+    )
+    measured_in: Measure = entry("What the programs were compiled to.")
+    terms: tuple[TermCost, ...] = entry("Each term of (3) and (7).")
+    effects: tuple[EffectCost, ...] = entry("Each effect of the system.")
+    pairs: tuple[EffectCost, ...] = entry("Each pair of its switches, a*b: what both add beyond what each adds.", ())
 
 
 def scene_costs(file: Source | Path, request: Request, limits: Limits) -> MeasuredCosts:
@@ -166,7 +175,7 @@ def read_costs(text: str) -> Costs:
     HolonomError
         The text is not such a document, or one of its programs is none.
     """
-    return structured(Costs, read(Document.EFFECTS, text))
+    return read(Document.EFFECTS, text, Costs)
 
 
 def measure_costs(costs: Costs) -> MeasuredCosts:

@@ -8,12 +8,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..described import SystemTitle
 from ..documents import NAME, ask
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, nothing_collected, read
+from ..formats import Document, read
 from ..sandbox import Limits
+from ..schema import Names, NumberText
 from ..source import Source
-from ..structs import structured
+from ..structs import entry
 from .motion_program import Program
 from .request import Request
 from .table import Table
@@ -23,33 +25,38 @@ from .table import Table
 class Model:
     """A scene with controls, and some parameters, as inputs."""
 
-    system: str
-    source: str
-    scene: str
-    title: str
-    # names of n coordinates, of g multipliers, of the controls, and of the parameters that are inputs
-    coordinates: tuple[str, ...]
-    multipliers: tuple[str, ...]
-    controls: tuple[str, ...]
-    parameters: tuple[str, ...]
-    values: Mapping[str, str]  # what the scene gives to these parameters, as decimal digits; some may be missing
-    # the time, coordinates and velocities at the initial time, as decimal digits; None where they depend on a parameter
-    # without value
-    start: Mapping[str, str] | None
-    # u, ``dot(u)``, ``ddot(u)`` of (t, parameters, what the tables are at t), of the controls that have a law; None
-    # without one
-    law: Program | None
-    tables: tuple[Table, ...]  # of the law, each of more polynomials than one
-    # ``ddot(q)`` and the multipliers by name. This and the next two take (t, q, dot q, u, dot u, ddot u, parameters).
-    motion: Program
-    # ``residual[beta]``, ``residual_rate[beta]`` and those ``J[beta,s]`` that are not zero by structure; None without a
-    # constraint
-    constraints: Program | None
-    projection: Program  # ``position_correction[s]``, ``velocity_correction[s]``
-    # the controls that servo-constraints find, by name, of the same inputs; None where they find none
-    servo: Program | None = None
-    # what the scene observes under names of its own, of the same inputs; None without any
-    outputs: Program | None = None
+    system: SystemTitle = entry("The system.")
+    scene: str = entry("Name that the scene is assigned to.")
+    title: str = entry("Title of the scene.")
+    coordinates: Names = entry("The n coordinates.")
+    multipliers: Names = entry("The g multipliers, one for each constraint.")
+    controls: Names = entry("The controls, which are inputs.")
+    parameters: Names = entry("Parameters that stay open: inputs, too.")
+    values: Mapping[str, NumberText] = entry("The scene's values of the parameters that stay open.")
+    start: Mapping[str, NumberText] | None = entry(
+        "t, coordinates and velocities at the initial time; null if they depend on a parameter without value."
+    )
+    law: Program | None = entry(
+        "Program of (t, parameters, what the tables are at t): u, dot(u), ddot(u) of the controls with a law; "
+        "null without a law."
+    )
+    tables: tuple[Table, ...] = entry(
+        "Tables of the law: names of a polynomial's t_k, c0, c1, c2, c3 among the inputs, and the polynomials in "
+        "order, c0 + c1 tau + c2 tau^2 + c3 tau^3 with tau = t - t_k."
+    )
+    motion: Program = entry(
+        "The motion program of (t, q, dot q, u, dot u, ddot u, parameters): accelerations and multipliers."
+    )
+    constraints: Program | None = entry(
+        "Program: residual[b], residual_rate[b], and the entries J[b,s] that are not zero; null without a constraint."
+    )
+    projection: Program = entry("Program: position_correction[s] and velocity_correction[s].")
+    servo: Program | None = entry(
+        "Program of the same inputs as motion: the controls that servo-constraints find, by name; "
+        "null where they find none.",
+        None,
+    )
+    outputs: Program | None = entry("Program: what the scene observes under names of its own; null without any.", None)
 
     @property
     def histories(self) -> tuple[str, ...]:
@@ -110,7 +117,6 @@ def scene_model(file: Source | Path, request: Request, parameters: Sequence[str]
     return read_model(ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits))
 
 
-@nothing_collected()
 def read_model(text: str) -> Model:
     """Read the document of a model.
 
@@ -128,6 +134,4 @@ def read_model(text: str) -> Model:
     HolonomError
         It is not such a document, or one of its programs is invalid.
     """
-    document = read(Document.MODEL, text)
-    system = document["system"]
-    return structured(Model, document, system=system["title"], source=system["source"])
+    return read(Document.MODEL, text, Model)

@@ -9,26 +9,38 @@ from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..described import Correction
+from ..described import Correction, SystemTitle
 from ..documents import ask
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, nothing_collected, read
+from ..formats import Document, read
 from ..language import Message, translatable
 from ..sandbox import Limits
+from ..schema import FloatText, Names, NumberText
 from ..source import Source, source_of
-from ..structs import group, key, structured
+from ..structs import entry, group, structured
+from .drawing import Drawing
 from .motion_program import Program
 from .request import Request
 from .table import Table
 
 if TYPE_CHECKING:
     from ..description import Description
-    from .drawing import Drawing
 
 Built = TypeVar("Built")
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
+
+
+class Observable(StrEnum):
+    """Quantities that a scene may observe."""
+
+    TRAJECTORY = "trajectory"
+    MULTIPLIERS = "multipliers"
+    CONSTRAINT_FORCES = "constraint_forces"
+    CONTROLS = "controls"
+    ENERGY = "energy"
+    RESIDUALS = "residuals"
 
 
 class DependsOn(StrEnum):
@@ -40,12 +52,13 @@ class DependsOn(StrEnum):
     REACTION = "reaction"
 
 
-class Sign(NamedTuple):
+@dataclass(frozen=True)
+class Sign:
     """A sign that a motion depends on."""
 
-    name: str  # its input of the programs
-    of: str  # the switching function whose sign it is, as Maxima prints it
-    by: DependsOn
+    name: str = entry("Name of the sign's input.")
+    of: str = entry("The switching function whose sign it is, as Maxima prints it.")
+    by: DependsOn = entry("Highest of the quantities on which the expression depends.")
 
 
 class Origin(StrEnum):
@@ -65,55 +78,83 @@ class Origin(StrEnum):
 class ParametricStart:
     """The initial state as a function of its open parameters."""
 
-    # of the open parameters: each coordinate and velocity, or what the search for it begins with
-    program: Program | None
-    origins: Mapping[str, Origin]
-    # why the initial state cannot be adapted to the parameters; there is a program where it can
-    obstruction: Message | None
+    program: Program | None = entry(
+        "Of these parameters: coordinates and velocities at the initial time, or values to begin their search with."
+    )
+    origins: Mapping[str, Origin] | None = entry(
+        "Of each: given; solved for from near the guess; or the one solution of linear equations."
+    )
+    obstruction: Message | None = entry("Why the initial state cannot be adapted to the parameters; null where it can.")
 
 
 @dataclass(frozen=True)
 class InitialData:
     """The origin of the initial state, which is in `MotionProblem.start`."""
 
-    # the given value whose last digits were corrected most to satisfy the constraints, and the correction
-    correction: Correction | None = None
-    # the initial value that differs most from the scene's guess, and by how much; None without a guess
-    moved: Correction | None = None
-    given: tuple[str, ...] = ()  # of the state: what the scene gives at the initial time; the rest is found
-    parametric: ParametricStart | None = key("parametric_start", None)  # None without open parameters
+    correction: Correction | None = entry(
+        "The initial value that had to be corrected most to fit the constraints, and by how much.", None
+    )
+    moved: Correction | None = entry(
+        "The initial value that differs most from initial_guess, and by how much; null without a guess.", None
+    )
+    given: tuple[str, ...] = entry(
+        "The coordinates and velocities whose initial values the scene gives; the others are solved for.", ()
+    )
+    parametric: ParametricStart | None = entry(
+        "The initial state as a function of the open parameters; null where there is none.",
+        None,
+        key="parametric_start",
+    )
 
 
 @dataclass(frozen=True)
 class Servo:
     """The servo-constraints of a motion, whose multipliers are zero."""
 
-    constraints: int = key("servo", 0)  # number of them, the last of the constraints
-    # ``servo_matrix[j,i]``: coefficient of the i-th control that they find, in the second time derivative of
-    # condition j; None without such controls
-    matrix: Program | None = key("servo_matrix", None)
-    # of each output that they prescribe: which of its time derivatives the controls are in
-    relative_degrees: tuple[int, ...] = ()
+    constraints: int = entry(
+        "Number of constraints, the last ones, that controls in forces satisfy without a reaction.",
+        0,
+        key="servo",
+        minimum=0,
+    )
+    matrix: Program | None = entry(
+        "Program: servo_matrix[j,i] is what control i adds to the second time derivative of the j-th condition of "
+        "the servo-constraints; null without any.",
+        None,
+        key="servo_matrix",
+    )
+    relative_degrees: tuple[int, ...] = entry(
+        "Of each output that servo-constraints prescribe: which of its time derivatives the controls are in.", ()
+    )
 
 
 @dataclass(frozen=True)
 class Release:
     """Constraints that end at the first zero crossing of a condition."""
 
-    of: str  # the condition, as Maxima prints it
-    multipliers: tuple[str, ...]  # those of the constraints
-    after: "MotionProblem"  # the motion without them, at the initial time of the whole
+    of: str = entry("The condition, as Maxima prints it.")
+    multipliers: Names = entry("Multipliers of the released constraints.")
+    after: "MotionProblem" = entry("The motion without them, at the initial time of the whole.")
 
 
 @dataclass(frozen=True)
 class Ends:
     """Zero crossings that end the motion, or constraints of it."""
 
-    # expressions whose first zero crossing ends the motion, as Maxima prints them; empty where the time span alone does
-    until: tuple[str, ...] = ()
-    events: Program | None = None  # ``event[i]``, their values; they may need the multipliers. None without `until`.
-    releases: Program | None = None  # ``event[i]``, the conditions of `released`, as `events`; None without any
-    released: tuple[Release, ...] = ()
+    until: tuple[str, ...] = entry(
+        "Expressions whose first zero crossing ends the motion; empty where the time span alone does.", ()
+    )
+    events: Program | None = entry(
+        "The program of these expressions, event[1], event[2], ...; null where there are none.", None
+    )
+    releases: Program | None = entry(
+        "The program of the conditions at which constraints end, event[1], event[2], ...; null where none does.", None
+    )
+    released: tuple[Release, ...] = entry(
+        "For each of these conditions the multipliers whose constraints end at its first zero crossing, and the "
+        "motion after that.",
+        (),
+    )
 
 
 @dataclass(frozen=True)
@@ -124,56 +165,102 @@ class MotionProblem:
     the tables are at t, in this order. That of the outputs the accelerations, too.
     """
 
-    # system, source: title of the system, and where it comes from
-    system: str
-    source: str
-    scene: str
-    title: str
-    time_span: tuple[str, str] | None  # first and last time, as decimal digits; None where the scene names none
-    observe: tuple[str, ...]  # what the scene observes: trajectory, multipliers, constraint_forces, energy, residuals
-    # coordinates, multipliers: names, n and g of them
-    coordinates: tuple[str, ...]
-    multipliers: tuple[str, ...]
-    # the time, coordinates and velocities at the initial time, as decimal digits; the time alone where a parameter
-    # without a value decides about the others
-    start: Mapping[str, str]
+    system: SystemTitle = entry("The system.")
+    scene: str = entry("Name that the scene is assigned to.")
+    title: str = entry("Title of the scene.")
+    time_span: tuple[NumberText, NumberText] | None = entry(
+        "First and last time, as decimal digits; null where the scene names none."
+    )
+    observe: tuple[Observable, ...] = entry("What the scene observes.")
+    coordinates: Names = entry("The n coordinates.")
+    multipliers: Names = entry("The g multipliers, one for each constraint.")
+    start: Mapping[str, NumberText] | None = entry(
+        "t, coordinates and velocities at the initial time, as decimal digits; null if they depend on a parameter "
+        "without value."
+    )
     initial: InitialData = group()
     ends: Ends = group()
     servo: Servo = group()
-    obstruction: Message | None  # why no order of pivots solves the equations of motion; None where one does
-    # ``ddot(q)``, the multipliers by name and, where the scene observes them, ``Lambda[s]``; None with an obstruction
-    motion: Program | None
-    # ``position_correction[s]`` and ``velocity_correction[s]``: to the nearest state, in the mass metric, that meets
-    # constraints, up to second order in the residuals; None with an obstruction
-    projection: Program | None
-    # ``A[s,k]`` and ``J[beta,s]`` where they are not zero by structure, ``h[s]``, ``c[beta]``, ``residual[beta]``,
-    # ``residual_rate[beta]``, indices from 1: A a - J^T lambda = h, J a = -c
-    matrices: Program
-    # ``energy``, the energy function, and ``power``, its time derivative along the motion; they need the multipliers
-    energy: Program
-    drawing: "Drawing | None"  # the drawing of the system, or None
-    # the last time at which the drives have values, where tables or special functions give them
-    law_end: str | None = None
-    written_out: tuple[str, ...] = ()  # special functions of the time, which programs hold as sums of polynomials
-    # the controls, by name, ``ddot(u)`` of those that servo-constraints move; None if they are not observed
-    controls: Program | None = None
-    # what the scene observes under names of its own; ``ddot(q)`` are inputs, behind the multipliers. None without any
-    outputs: Program | None = None
-    reacting: tuple[str, ...] = ()  # multipliers that forces contain
-    signs: tuple[Sign, ...] = ()  # of the functions whose changes of sign switch the motion; empty where it is analytic
-    # ``switch[i]``, the functions, with what decides how the motion passes their zeros, ``switch_rate[i]``,
-    # ``drive[i]`` and ``grip[i]``, and ``momentum[s]``; ``regular`` where forces contain multipliers,
-    # positive where they are determined. None without signs and without such forces
-    switching: Program | None = None
-    tables: tuple[Table, ...] = ()  # of the law, each of more polynomials than one
-    parameters: tuple[str, ...] = ()  # those that stay open
-    # their values in this motion; some may be missing if none is integrated
-    values: Mapping[str, Fraction] = field(default_factory=dict)
-    # sizes with which quantities are compared, by name, ``t`` for the time: those that the scene gives
-    nominal: Mapping[str, float] = field(default_factory=dict)
+    obstruction: Message | None = entry("Why no order of pivots solves the equations of motion; null where one does.")
+    motion: Program | None = entry(
+        "Program: ddot(q), the multipliers by name and, where the scene observes them, Lambda[s]; "
+        "null with an obstruction."
+    )
+    projection: Program | None = entry(
+        "Program: position_correction[s] and velocity_correction[s], to the nearest state in the mass metric "
+        "that meets the constraints, up to second order in the residuals; null with an obstruction."
+    )
+    matrices: Program = entry(
+        "Program: A[s,k] and J[b,s] where they are not zero by structure, h[s], c[b], residual[b], residual_rate[b]: "
+        "A a - J^T lambda = h, J a = -c."
+    )
+    energy: Program = entry(
+        "Program of the multipliers, too: energy, the energy function, and power, its time derivative along the motion."
+    )
+    drawing: Drawing | None = entry("Drawing of the system, or null.")
+    law_end: NumberText | None = entry(
+        "The last time at which the drives have values, where tables or special functions give them; null where "
+        "nothing ends them.",
+        None,
+    )
+    written_out: Names = entry(
+        "Special functions of the time, which the programs hold as sums of Chebyshev polynomials.", ()
+    )
+    controls: Program | None = entry(
+        "The program of the controls, by name; null where the scene does not observe them.", None
+    )
+    outputs: Program | None = entry(
+        "The program of the outputs that the scene names, whose inputs have ddot(q) behind the multipliers; null "
+        "without any.",
+        None,
+    )
+    reacting: Names = entry("Multipliers that forces contain.", ())
+    signs: tuple[Sign, ...] = entry(
+        "Inputs of every program after the multipliers: the signs of the functions that switch the motion; empty "
+        "where it is analytic.",
+        (),
+    )
+    switching: Program | None = entry(
+        "Program: switch[i], the functions, with what decides how the motion passes their zeros, switch_rate[i], "
+        "drive[i] and grip[i], and momentum[s]; regular where forces contain multipliers, positive where they are "
+        "determined; null without signs and without such forces.",
+        None,
+    )
+    tables: tuple[Table, ...] = entry(
+        "Tables of the law: names of a polynomial's t_k, c0, c1, c2, c3 among the inputs, and the polynomials in "
+        "order, c0 + c1 tau + c2 tau^2 + c3 tau^3 with tau = t - t_k.",
+        (),
+    )
+    parameters: Names = entry("Inputs of every program after the signs: the parameters that stay open.", ())
+    values: Mapping[str, Fraction] = entry("What the scene gives to these; some may be missing.", dict)
+    nominal: Mapping[str, FloatText] = entry(
+        "Sizes of coordinates, velocities and the time t that the scene gives.", dict
+    )
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
     joint_shapes: Mapping[str, Sequence[int]] = field(default_factory=dict)  # as `Description.joint_shapes`
     _compiled: dict[Hashable, list[tuple[object, Any]]] = field(default_factory=dict, compare=False, repr=False)
+
+    @staticmethod
+    def of_document(document: Mapping[str, Any]) -> "MotionProblem":
+        """Read the document of a motion, or of one that follows a release.
+
+        Parameters
+        ----------
+        document : mapping
+            Decoded JSON.
+
+        Returns
+        -------
+        MotionProblem
+            With the initial time alone where a parameter without a value decides about the initial state.
+        """
+        problem = structured(MotionProblem, document)
+        span, drawing = problem.time_span, problem.drawing
+        return replace(
+            problem,
+            start=problem.start or {"t": span[0] if span else "0"},
+            drawing=drawing and replace(drawing, tables=problem.tables),
+        )
 
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
         """Return the result of `build` for a part, cached for all values of open inputs.
@@ -406,7 +493,6 @@ def problem_document(
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 
-@nothing_collected()
 def read_problem(text: str, description: "Description | None" = None) -> MotionProblem:
     """Read the document of a motion problem.
 
@@ -426,35 +512,7 @@ def read_problem(text: str, description: "Description | None" = None) -> MotionP
     HolonomError
         It is not such a document, or one of its programs is invalid.
     """
-    problem = _problem(read(Document.MOTION_PROBLEM, text))
+    problem = read(Document.MOTION_PROBLEM, text, MotionProblem)
     if description is None:
         return problem
     return replace(problem, joints=description.joints, joint_shapes=description.joint_shapes)
-
-
-def _problem(document: Mapping[str, Any]) -> MotionProblem:
-    system, span, drawing = document["system"], document["time_span"], document["drawing"]
-    start = document["parametric_start"]
-    released = (
-        Release(each["of"], tuple(each["multipliers"]), _problem(each["after"]))
-        for each in document.get("released", ())
-    )
-    problem = structured(
-        MotionProblem,
-        document,
-        system=system["title"],
-        source=system["source"],
-        start=document["start"] or {"t": span[0] if span else "0"},
-        initial=structured(
-            InitialData,
-            document,
-            parametric=start and structured(ParametricStart, start | {"origins": start["origins"] or {}}),
-        ),
-        ends=structured(Ends, document, released=tuple(released)),
-        drawing=None,
-    )
-    if drawing is None:
-        return problem
-    from .drawing import Drawing
-
-    return replace(problem, drawing=structured(Drawing, drawing, tables=problem.tables))

@@ -17,13 +17,14 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 from ..expression.functions import FUNCTIONS
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, nothing_collected, read, require
+from ..formats import Document, read, require
 from ..language import translatable
-from ..structs import structured
+from ..schema import Names
+from ..structs import computed, entry, structured
 from .request import Solve
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
@@ -88,17 +89,20 @@ Expression = Atom | Call
 class Program:
     """A motion program."""
 
-    scene: str | None  # name of the scene it was written for; None for a system alone
-    solve: Solve
-    method: str  # which factorisation the solve uses, for example ``bordered`` or ``schur``
-    inputs: tuple[str, ...]
-    assignments: tuple[tuple[str, Expression], ...]  # in the order in which they can be computed
-    outputs: Mapping[str, Atom]
-    # multipliers that were put to zero, for their constraints follow from the others near the initial state:
-    # accelerations and constraint forces are unique, multipliers are not
-    redundant: tuple[str, ...] = ()
+    scene: str | None = entry("Name of the scene; null for a system alone.")
+    solve: Solve = entry("How the multipliers are solved for.")
+    method: str = entry("What was factored, such as bordered or schur.")
+    inputs: Names = entry("Names, in the order of every function made of the program.")
+    assignments: tuple[tuple[str, Expression], ...] = entry("Name and expression, each of inputs and names before it.")
+    outputs: Mapping[str, Atom] = entry("Name or number of each quantity that is computed.", minProperties=1)
+    redundant: tuple[str, ...] = entry(
+        "Multipliers that were put to zero, for their constraints follow from the others near the initial state.", ()
+    )
+
+    SHAPE: ClassVar = {"type": "object"}  # within other documents, where it is a document of its own
 
     @cached_property
+    @computed("Number of operations of all assignments.", minimum=0)
     def operations(self) -> int:
         """Number of operations, by the rule of `operations_in`."""
         return sum(operations_in(expression) for _, expression in self.assignments)
@@ -121,11 +125,10 @@ class Program:
         HolonomError
             As `read_program`.
         """
-        require(Document.PROGRAM, document)
+        require(Document.PROGRAM, document, Program)
         return _checked(document)
 
 
-@nothing_collected()
 def read_program(text: str) -> Program:
     """Read the document of a motion program.
 
@@ -143,7 +146,7 @@ def read_program(text: str) -> Program:
     HolonomError
         The text is not such a document, names a value that nothing before it computes, or computes one twice.
     """
-    return _checked(read(Document.PROGRAM, text))
+    return read(Document.PROGRAM, text, Program)
 
 
 def _checked(document: Mapping[str, Any]) -> Program:

@@ -8,16 +8,21 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Annotated
 
-Piece = tuple[str, str, str, str, str]  # t_k, c0, c1, c2, c3, exact or in decimal digits
+from ..schema import Rules
+from ..structs import entry
+
+Number = Annotated[str, Rules({"pattern": "^-?[0-9.]+(/[0-9]+|e-?[0-9]+)?$"})]
+Piece = tuple[Number, Number, Number, Number, Number]  # t_k, c0, c1, c2, c3, exact or in decimal digits
 
 
 @dataclass(frozen=True)
 class Table:
     """The polynomials of one table, in order."""
 
-    inputs: tuple[str, ...]  # names of the five numbers of a polynomial in programs
-    pieces: tuple[Piece, ...]
+    inputs: tuple[str, ...] = entry("Input names of t_k, c0, c1, c2, c3.", minItems=5)
+    pieces: tuple[Piece, ...] = entry("Values of t_k, c0, c1, c2, c3 for each polynomial.", minItems=2)
 
     @cached_property
     def begins(self) -> tuple[Fraction, ...]:

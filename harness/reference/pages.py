@@ -1,6 +1,6 @@
 """Sphinx extension that fills the templates of the reference pages.
 
-Entries come from `entries.toml` and documents from their schemas. Sphinx itself reads commands and docstrings.
+Entries come from `entries.toml` and documents from their types. Sphinx itself reads commands and docstrings.
 """
 
 import json
@@ -15,7 +15,7 @@ from jinja2 import Environment, FileSystemLoader
 from sphinx.application import Sphinx
 
 from ..cli import group
-from ..formats import SCHEMAS, schema
+from ..document_types import TYPES, schema
 from .entries import function_texts, part_texts, step_texts
 
 FOLDER = "reference/"
@@ -39,11 +39,25 @@ def setup(app: Sphinx) -> dict[str, bool]:
     """
     for kind in ("function", "entry"):
         app.add_object_type(f"maxima-{kind}", f"maxima-{kind}", indextemplate=f"pair: %s; Maxima {kind}")
+    app.connect("builder-inited", _write_schemas)
     app.connect("source-read", _fill_page)
     app.connect("sphinx-click-process-usage", _show_defaults)
     app.connect("sphinx-click-process-epilog", _add_examples)
     app.connect("autodoc-process-signature", _hide_constructor)
     return {"parallel_read_safe": True}
+
+
+def _write_schemas(app: Sphinx) -> None:
+    """Write the schemas that the page about documents links to."""
+    if app.builder.format == "html":
+        folder = Path(app.outdir, "_static", "schemas")
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, found in _schemas().items():
+            (folder / f"{name}.json").write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+
+
+def _schemas() -> dict[str, dict[str, Any]]:
+    return {name: schema(name) for name in sorted(TYPES)}
 
 
 def _fill_page(app: Sphinx, name: str, source: list[str]) -> None:
@@ -61,7 +75,7 @@ def _templates() -> Environment:
         "functions": {each.name: each for each in function_texts()},
         "bodies": part_texts(),
         "steps": step_texts(),
-        "schemas": {file.stem: schema(file.stem) for file in sorted(SCHEMAS.glob("*.json"))},
+        "schemas": _schemas(),
         "statuses": (group.__doc__ or "").split("\n\n")[1],
         "fields": fields_of,
     }
@@ -148,6 +162,8 @@ def _kind(field: Mapping[str, Any]) -> str:
         return " | ".join(map(json.dumps, field["enum"]))
     if "$ref" in field:
         return field["$ref"].rpartition("/")[2]
+    if field.get("type") == "array" and "$ref" in (item := field.get("items") or {}):
+        return f"array of {_kind(item)}"
     if alternatives := (*field.get("oneOf", ()), *field.get("anyOf", ())):
         return " | ".join(map(_kind, alternatives))
     kind = field.get("type", "anything")

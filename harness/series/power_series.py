@@ -6,7 +6,7 @@ mpmath's numbers with as many digits.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -14,28 +14,29 @@ from typing import Any
 import mpmath
 
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, Publication, nothing_collected, published, read
+from ..formats import Document, Publication, published, read
 from ..language import translatable
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
+from ..schema import NumberText
 from ..shown import Shown
-from ..structs import structured
+from ..structs import entry
 from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
 MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
 
-NumberTexts = tuple[str, ...]
+NumberTexts = tuple[NumberText, ...]
 
 
 @dataclass(frozen=True)
 class Continuation:
     """States of a motion at the centres of its expansions, the last at the final time."""
 
-    digits: int
-    times: NumberTexts
-    coordinates: Mapping[str, NumberTexts]
-    velocities: Mapping[str, NumberTexts]
+    digits: int = entry("Number of digits.", minimum=1)
+    times: NumberTexts = entry("Times of the expansions.")
+    coordinates: Mapping[str, NumberTexts] = entry("Values of each coordinate at these times.")
+    velocities: Mapping[str, NumberTexts] = entry("Values of each velocity at these times.")
 
 
 @dataclass(frozen=True, repr=False)
@@ -54,19 +55,30 @@ class MotionSeries(Shown):
         A function with whose sign the motion is another than the series, or None where there is none.
     """
 
-    scene: str
-    title: str
-    order: int
-    t0: str
-    arithmetic: str
-    coordinates: Mapping[str, NumberTexts]
-    multipliers: Mapping[str, NumberTexts]
-    constraint_forces: Mapping[str, NumberTexts]
-    continuation: Continuation | None = None
-    switch: str | None = None
-    polynomial: bool = False  # whether the equations of motion are satisfied identically by the series as they end here
-    sensitivities: Mapping[str, NumberTexts] = field(default_factory=dict)
-    program: Program | None = None  # of t, coordinates and velocities; None where it is not known
+    scene: str = entry("Name that the scene is assigned to.")
+    title: str = entry("Title of the scene.")
+    order: int = entry("Highest power of t - t0.", minimum=2)
+    t0: NumberText = entry("The initial time.")
+    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).")
+    coordinates: Mapping[str, NumberTexts] = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
+    multipliers: Mapping[str, NumberTexts] = entry("Coefficients of the multipliers, by name.")
+    constraint_forces: Mapping[str, NumberTexts] = entry("Lambda[s]; empty where the scene does not observe them.")
+    continuation: Continuation | None = entry(
+        "States at the times where the motion was expanded anew; null where no continuation is asked for.", None
+    )
+    switch: str | None = entry(
+        "A function with whose sign the motion is another than the series; null where there is none.", None
+    )
+    polynomial: bool = entry(
+        "Whether the equations of motion are satisfied identically by the series as they end here.", False
+    )
+    sensitivities: Mapping[str, NumberTexts] = entry(
+        "Derivatives of the coefficients by parameters and initial values, by names such as d(x, m).", dict
+    )
+    program: Program | None = entry(
+        "Program of t, coordinates and velocities: accelerations and what the series are of; null where there is none.",
+        None,
+    )
 
     @property
     def digits(self) -> int:
@@ -112,8 +124,17 @@ class MotionSeries(Shown):
         coefficients : tuple of str, shape (order + 1,)
             Those of (t - t0)^0, (t - t0)^1, and so on.
         """
-        for group in (self.coordinates, self.multipliers, self.constraint_forces, self.sensitivities):
+        for group in self.groups():
             yield from group.items()
+
+    def groups(self) -> tuple[Mapping[str, NumberTexts], ...]:
+        """Return the series by kinds of quantities, derivatives last.
+
+        Returns
+        -------
+        tuple of mapping of str to tuple of str
+        """
+        return self.coordinates, self.multipliers, self.constraint_forces, self.sensitivities
 
 
 @dataclass(frozen=True)
@@ -125,7 +146,51 @@ class Values:
     truncation_error: float
 
 
-@nothing_collected()
+@dataclass(frozen=True)
+class SeriesValues:
+    """Sums of the series at a given time."""
+
+    t: str = entry("Time of the values.")
+    values: Mapping[str, str] = entry("Value of each quantity, by its name.")
+    truncation_error: float = entry("Estimated truncation error.")
+
+
+Published = float | str
+PublishedSeries = Mapping[str, tuple[Published, ...]]
+
+
+@dataclass(frozen=True)
+class SeriesDocument:
+    """The power series of a motion about its initial time.
+
+    Numbers beyond double precision are decimal text, exact ones p/q.
+    """
+
+    scene: str = entry("Name that the scene is assigned to.")
+    title: str = entry("Title of the scene.")
+    switch: str | None = entry(
+        "A function with whose sign the motion is another than the series; null where there is none."
+    )
+    order: int = entry("Highest power of t - t0.", minimum=2)
+    t0: Published = entry("The initial time.")
+    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).")
+    coordinates: PublishedSeries = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
+    multipliers: PublishedSeries = entry("Coefficients of the multipliers, by name.")
+    constraint_forces: PublishedSeries = entry("Lambda[s]; empty where the scene does not observe them.")
+    sensitivities: PublishedSeries = entry(
+        "Derivatives of these coefficients by parameters and initial values, by names such as d(x, m)."
+    )
+    radius_of_convergence: Radius = entry(
+        "Radius of convergence about t0, how uncertain it is, and the singularities that set it."
+    )
+    at: SeriesValues | None = entry(
+        "What the series add up to at a given time, where that is asked for.", None, optional=True
+    )
+    continuation: Continuation | None = entry(
+        "States at the times where the motion was expanded anew, where that is asked for.", None, optional=True
+    )
+
+
 def read_series(text: str) -> MotionSeries:
     """Read the power series that Maxima writes.
 
@@ -143,7 +208,7 @@ def read_series(text: str) -> MotionSeries:
     HolonomError
         It is not such a document.
     """
-    return structured(MotionSeries, read(Document.MOTION_SERIES, text))
+    return read(Document.MOTION_SERIES, text, MotionSeries)
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:
@@ -204,38 +269,25 @@ def series_document(motion: MotionSeries, values: Values | None = None) -> dict[
     dict
         Content with format and version.
     """
-    radius = motion.radius
     t0 = float(number(motion.t0))
-    content = {
-        "scene": motion.scene,
-        "title": motion.title,
-        "switch": motion.switch,
-        "order": motion.order,
-        "t0": _published(motion, motion.t0),
-        "arithmetic": motion.arithmetic,
-        "coordinates": _published_series(motion, motion.coordinates),
-        "multipliers": _published_series(motion, motion.multipliers),
-        "constraint_forces": _published_series(motion, motion.constraint_forces),
-        "sensitivities": _published_series(motion, motion.sensitivities),
-        "radius_of_convergence": {
-            "estimate": radius.estimate,
-            "uncertainty": radius.uncertainty,
-            "singularities": [[t0 + z.real, z.imag] for z in radius.singularities],
-            "note": radius.note,
-            "located": radius.located,
-            "coefficients": radius.coefficients,
-            "unseen": radius.unseen,
-        },
-    }
-    if values is not None:
-        content["at"] = {
-            "t": str(values.time),
-            "values": {name: mpmath.nstr(value, motion.digits) for name, value in values.values.items()},
-            "truncation_error": values.truncation_error,
-        }
-    if motion.continuation is not None:
-        content["continuation"] = vars(motion.continuation)
+    singularities = tuple(t0 + z for z in motion.radius.singularities)
+    content = SeriesDocument(
+        motion.scene,
+        motion.title,
+        motion.switch,
+        motion.order,
+        _published(motion, motion.t0),
+        motion.arithmetic,
+        *(_published_series(motion, group) for group in motion.groups()),
+        replace(motion.radius, singularities=singularities),
+        values and SeriesValues(str(values.time), _texts(values, motion.digits), values.truncation_error),
+        motion.continuation,
+    )
     return published(Publication.SERIES, content)
+
+
+def _texts(values: Values, digits: int) -> dict[str, str]:
+    return {name: mpmath.nstr(value, digits) for name, value in values.values.items()}
 
 
 def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> None:

@@ -23,7 +23,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -31,6 +31,8 @@ from typing import TYPE_CHECKING
 import mpmath
 
 from ..language import Message, translatable
+from ..schema import PAIRS
+from ..structs import entry
 
 LAGS = (1, 2, 4)  # singularities that a recurrence knows
 FEWEST = 12  # fewest coefficients from which a radius is estimated
@@ -62,15 +64,21 @@ if TYPE_CHECKING:
 class Radius:
     """Radius of convergence about the initial time."""
 
-    estimate: float | None  # None if there is no estimate; the note states the reason
-    uncertainty: float | None
-    singularities: tuple[complex, ...]  # the nearest ones, as t - t0
-    note: str  # what was found, in words
-    located: bool = False  # True if the equations of motion are singular there; False if only the coefficients show it
-    coefficients: int = field(default=0, compare=False)  # how many were looked at
-    # largest strength, relative to the singularity found, of an undetected one at nine tenths of its distance; None if
-    # nothing was fitted
-    unseen: float | None = field(default=None, compare=False)
+    estimate: float | None = entry("Estimate of the radius; null if there is none, for the reason in the note.")
+    uncertainty: float | None = entry("Uncertainty of the estimate; null if there is none.")
+    singularities: tuple[complex, ...] = entry("Real and imaginary parts of the nearest ones.", **PAIRS)
+    note: str = entry("Note on the estimate.")
+    located: bool = entry(
+        "True if the equations of motion are singular there; false if only the coefficients show the singularity.",
+        False,
+    )
+    coefficients: int = entry("Number of coefficients that were looked at.", 0, compare=False)
+    unseen: float | None = entry(
+        "Largest strength, relative to the one found, of a singularity at nine tenths of its distance that would "
+        "remain undetected; null without an estimate from coefficients.",
+        None,
+        compare=False,
+    )
 
 
 NEARER = 0.9  # of the estimate: where a weak singularity may hide

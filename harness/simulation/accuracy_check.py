@@ -11,7 +11,7 @@ beginning of a step.
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from fractions import Fraction
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +31,10 @@ FINEST = 1e-15  # relative error of a step, however fine its tolerance: residual
 class AccuracyViolation(NamedTuple):
     """A quantity with an error too large for the tolerance."""
 
-    # ``position``, ``velocity``, ``energy``, ``multipliers``, or ``acceleration``: of the equations of motion within a
-    # step
-    quantity: str
-    # error, expected: relative: what was found, and the most that the tolerance lets expect
-    error: float
-    expected: float
+    # position, velocity, energy, multipliers, or acceleration: of the equations of motion within a step
+    quantity: Annotated[str, "Name of the quantity."]
+    error: Annotated[float, "Relative error that was found."]
+    expected: Annotated[float, "Largest relative error expected at this tolerance."]
 
     @property
     def reason(self) -> str:

@@ -5,7 +5,7 @@ integrated to its end once before it is recorded, so that the recording ends wit
 """
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -32,9 +32,10 @@ Values = Callable[[Numbers, Numbers], Numbers]
 class Ending(NamedTuple):
     """The events at which the scene ends a motion."""
 
-    of: tuple[str, ...]  # the expressions whose first zero crossing ends the motion, as Maxima prints them
-    # the one that crossed zero at the last time; None where none did before the time span was over
-    crossed: str | None
+    of: Annotated[tuple[str, ...], "The expressions whose first zero crossing ends the motion, as Maxima prints them."]
+    crossed: Annotated[
+        str | None, "The one that crossed zero at the last time; null where the time span was over before."
+    ]
 
 
 def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Crossing | None:

@@ -23,7 +23,7 @@ from enum import StrEnum
 from fractions import Fraction
 from heapq import merge
 from itertools import groupby, islice
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -78,9 +78,9 @@ class EventOutcome(StrEnum):
 class Switching(NamedTuple):
     """A time at which a motion is not analytic."""
 
-    t: float
-    function: str  # what changes its sign there, as Maxima prints it
-    outcome: EventOutcome
+    t: Annotated[float, "Time of the switching."]
+    function: Annotated[str, "Function whose sign changes, as Maxima prints it."]
+    outcome: Annotated[EventOutcome, "Behaviour after the switching."]
 
 
 class ModeInterval(NamedTuple):

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..described import Correction
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, Origin
@@ -377,7 +378,8 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
             ErrorKind.NO_INITIAL_STATE, problem.scene, translatable("no state satisfies the constraints")
         )
     found = started(problem, complete, starts.states[:, 0])
-    correction, moved = (told(numbers, starts.states) for told in (initial_states.correction, initial_states.moved))
+    told = (of(numbers, starts.states) for of in (initial_states.correction, initial_states.moved))
+    correction, moved = (change and Correction(*change) for change in told)
     initial = replace(problem.initial, correction=correction, moved=moved or problem.initial.moved)
     return replace(found, initial=initial)
 

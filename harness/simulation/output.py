@@ -9,6 +9,7 @@ import shutil
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from functools import partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any, BinaryIO
@@ -25,7 +26,8 @@ from ..hidden import visible_line
 from ..language import translatable
 from ..program.motion_problem import MotionProblem
 from ..sandbox import MIB
-from .result import Report, Sampled, Simulation
+from ..structs import written
+from .result import Report, Sampled, Simulation, SimulationDocument
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
@@ -343,10 +345,7 @@ def simulation_document(simulation: Simulation) -> dict[str, Any]:
     -------
     dict
     """
-    digits = simulation.report.digits
-    columns = {name: published_list(samples, digits) for name, samples in simulation.columns()}
-    named = {"scene": simulation.scene, "title": simulation.title}
-    return report_document(simulation.report) | named | {"samples": columns}
+    return _document(simulation.report, simulation.scene, simulation.title, dict(simulation.columns()))
 
 
 def report_document(report: Report) -> dict[str, Any]:
@@ -363,25 +362,12 @@ def report_document(report: Report) -> dict[str, Any]:
     -------
     dict
     """
-    texts = {"engine": engine_text(report.segments), "notes": tuple(notes(report))}
-    lists = {
-        name: tuple(each._asdict() for each in getattr(report, name))
-        for name in ("segments", "switchings", "violations")
-    }
-    correction, moved = (
-        change and dict(zip(("name", "size"), change, strict=True)) for change in (report.correction, report.moved)
-    )
-    ending = None if report.ending is None else report.ending._asdict()
-    attributes = vars(report) | lists | texts
-    choice = None if report.choice is None else vars(report.choice)
-    attributes |= {
-        "trusted": report.trusted,
-        "correction": correction,
-        "moved": moved,
-        "ending": ending,
-        "choice": choice,
-    }
-    return published(Publication.SIMULATION, {k: _published(value, report.digits) for k, value in attributes.items()})
+    return _document(report)
+
+
+def _document(report: Report, *of_samples: Any) -> dict[str, Any]:
+    content = SimulationDocument(report, engine_text(report.segments), tuple(notes(report)), *of_samples)
+    return published(Publication.SIMULATION, content, partial(_text, digits=report.digits))
 
 
 def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
@@ -399,25 +385,11 @@ def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
     list of float or str
         Numbers that no double can hold as decimal text.
     """
-    return samples.tolist() if samples.dtype == float else [_published(sample, digits) for sample in samples]
-
-
-def _published(value: Any, digits: int) -> Any:
-    match value:
-        case str() | int() | None:
-            return value
-        case Mapping():
-            return {name: _published(each, digits) for name, each in value.items()}
-        case tuple():
-            return [_published(each, digits) for each in value]
-        case float():
-            return float(value)
-        case _:
-            return _text(value, digits)
+    return written(samples, partial(_text, digits=digits))
 
 
 def _text(number: Any, digits: int) -> str:
-    """Decimal digits of a number that no double can hold."""
+    """Return decimal digits of a number that no double can hold."""
     import mpmath
 
     with mpmath.workdps(digits + 5):

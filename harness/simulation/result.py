@@ -2,13 +2,16 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..described import Correction
 from ..extras import missing_package
+from ..schema import Rules
 from ..shown import Shown
+from ..structs import computed, entry, group
 from .accuracy_check import AccuracyViolation
 from .engines.choice import Choice
 from .engines.fallback import EngineSegment
@@ -24,6 +27,7 @@ if TYPE_CHECKING:
     from ..program.drawing import Drawing
 
 Samples = Mapping[str, NDArray[Any]]
+Number = Annotated[Any, Rules({"type": ["number", "string"]})]  # beyond double precision, heyoka's own
 
 
 @dataclass(frozen=True)
@@ -80,40 +84,85 @@ class Report:
         The first time from which an expression of the time changes too fast to be looked at ahead.
     """
 
-    t: Any
-    coordinates: Mapping[str, Any]
-    velocities: Mapping[str, Any]
-    multipliers: Mapping[str, Any]
-    residuals: Mapping[str, float]
-    energy_error: float
-    condition: float
-    steps: int
-    segments: tuple[EngineSegment, ...]
-    code: str
-    precision: str
-    digits: int
-    tol: float
-    compile_seconds: float
-    run_seconds: float
-    correction: tuple[str, str] | None
-    cases: tuple[Difficulty, ...]
-    switchings: tuple[Switching, ...]
-    violations: tuple[AccuracyViolation, ...]
-    ending: Ending | None = None
-    choice: Choice | None = None
-    controls: Mapping[str, Any] = field(default_factory=dict)
-    outputs: Mapping[str, Any] = field(default_factory=dict)
-    undetermined: tuple[str, ...] = ()
-    joints: Mapping[str, str] = field(default_factory=dict)
-    relative_degrees: tuple[int, ...] = ()
-    moved: tuple[str, str] | None = None
-    unresolved: float | None = None
-    sensitivities: Mapping[str, float] = field(default_factory=dict)
+    t: Number = entry("The last time.")
+    coordinates: Mapping[str, Number] = entry("Values of the coordinates, by name.")
+    velocities: Mapping[str, Number] = entry("Values of the velocities, by name.")
+    multipliers: Mapping[str, Number] = entry("Empty where the scene does not observe them.")
+    residuals: Mapping[str, float] = entry(
+        "How far the final state is from the constraints: position, velocity and acceleration.",
+        required=["position", "velocity", "acceleration"],
+    )
+    energy_error: Number = entry("Energy gained beyond the work done.")
+    condition: float = entry("Condition number of G = J A^-1 J^T at the end.")
+    steps: int = entry("Number of steps.", minimum=0)
+    segments: tuple[EngineSegment, ...] = entry("Engine of each interval of the motion, and the reason for it.")
+    code: str = entry("How heyoka compiled the Taylor engine; empty where it did nothing.")
+    precision: str = entry("The numbers that were computed with.")
+    digits: int = entry("Decimal digits that distinguish these numbers.")
+    tol: float = entry("Tolerance of a step.")
+    compile_seconds: float = entry("Time to compile.")
+    run_seconds: float = entry("Time to integrate the motion.")
+    correction: Correction | None = entry(
+        "The initial value that had to be corrected most to fit the constraints, and by how much."
+    )
+    cases: tuple[Difficulty, ...] = entry("Kinds of hard case that the motion is.")
+    switchings: tuple[Switching, ...] = entry(
+        "Times at which the motion is not analytic: the function that changes its sign, and how the motion passes "
+        "its zero."
+    )
+    violations: tuple[AccuracyViolation, ...] = entry(
+        "Quantities whose relative error exceeds what the tolerance allows."
+    )
+    ending: Ending | None = entry("Whether an event ended the motion; null where the scene names none.", None)
+    choice: Choice | None = entry(
+        "Why the engine that began was taken: the steps that the Taylor engine has ahead, the operations of the "
+        "motion program, and the seconds that the motion is expected to take with each engine. Null where one was "
+        "asked for, or is the only one.",
+        None,
+    )
+    controls: Mapping[str, Number] = entry("Empty where the scene does not observe them.", dict)
+    outputs: Mapping[str, Number] = entry("What the scene observes under names of its own.", dict)
+    undetermined: tuple[str, ...] = entry("Outputs that are not unique because constraints are redundant.", ())
+    joints: Mapping[str, str] = entry(
+        "Of multipliers the joint or body that they belong to, by its name in the scene file.", dict
+    )
+    relative_degrees: tuple[int, ...] = entry(
+        "Of each output that servo-constraints prescribe: which of its time derivatives the controls are in.", ()
+    )
+    moved: Correction | None = entry(
+        "The initial value that differs most from initial_guess, and by how much; null without a guess.", None
+    )
+    unresolved: float | None = entry(
+        "The first time from which a function of the time changes too often to be looked at ahead, or null.", None
+    )
+    sensitivities: Mapping[str, Number] = entry(
+        "Derivatives at the end, by name such as d(x, m); d(t, m) where an event ends the motion.", dict
+    )
 
     @property
+    @computed(
+        "True if all errors are in proportion to the tolerance. If false, the simulation failed the accuracy check."
+    )
     def trusted(self) -> bool:
         """True if no error is too large for the tolerance."""
         return not self.violations
+
+
+@dataclass(frozen=True)
+class SimulationDocument:
+    """A motion integrated numerically.
+
+    Numbers beyond double precision are decimal text.
+    """
+
+    report: Report = group()
+    engine: str = entry("The same as the segments in one line.")
+    notes: tuple[str, ...] = entry("One message each: a hand-over, advice on a hard case.")
+    scene: str | None = entry("Name of the scene.", None, optional=True)
+    title: str | None = entry("Title of the scene.", None, optional=True)
+    samples: Mapping[str, tuple[Number, ...]] | None = entry(
+        "By name, t first; missing where the final state alone is asked for.", None, optional=True
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -147,8 +196,8 @@ class Sampled:
         """
         yield "t", self.times
         forces = self.multipliers, self.constraint_forces, self.controls
-        for group in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
-            yield from group.items()
+        for part in (self.coordinates, self.velocities, *forces, self.outputs, self.energy, self.sensitivities):
+            yield from part.items()
         yield from self.residual_columns().items()
 
     def residual_columns(self) -> Samples:

@@ -30,16 +30,20 @@ from numpy.polynomial import legendre
 from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import derivative_name
 from ..program.motion_problem import MotionProblem, require_analytic
+from ..schema import MATRIX, PAIRS, VECTOR, lists_of
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector
 from ..simulation.nominal import nominal_of
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
+from ..structs import Documented, computed, entry
 from .equilibria import Stability, certain_distances
 from .linear_equations import LinearEquations, Point
 from .linearization import (
+    RATES,
     Linearization,
+    by_rates,
     linearization_of,
     linearize,
     motion_at,
@@ -57,6 +61,8 @@ COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives 
 CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
 RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same
 VANISHING = 1e-9  # multipliers relative to the terms that they are the sum of
+MATRICES = lists_of(MATRIX)
+POINTS = lists_of({"type": "object", "additionalProperties": {"type": "number"}})
 PERTURBED = 1e-7  # relative error of Phi against which characteristic multipliers are certain
 
 
@@ -74,14 +80,16 @@ class Floquet:
         neither the equations nor the controls contain the time.
     """
 
-    period: float
-    multipliers: Vector
-    stability: Stability
+    period: float = entry("Last time less the first.")
+    multipliers: Vector = entry(
+        "Eigenvalues of the monodromy matrix, real and imaginary parts, the largest first.", **PAIRS
+    )
+    stability: Stability = entry("Of the motion, by Lyapunov's theorem.")
 
     @property
     def exponents(self) -> Vector:
         """Characteristic exponents, log(multiplier)/period, shape (2m,)."""
-        return np.log(self.multipliers.astype(complex)) / self.period
+        return np.log(self.multipliers) / self.period
 
 
 @dataclass(frozen=True)
@@ -100,14 +108,33 @@ class FreeDeviations:
         Of the multipliers, if the motion is periodic. None otherwise.
     """
 
-    staying: int
-    sizes: Vector
-    basis: Matrix
-    stability: Stability | None
+    staying: int = entry("Dimension of the initial deviations that stay free to first order, at most 2m.", minimum=0)
+    sizes: Vector = entry(
+        "The longest vector of multipliers of all initial deviations of length one, at each time.", **VECTOR
+    )
+    basis: Matrix = entry("Of the initial deviations that stay free, 2m rows.", **MATRIX)
+    stability: Stability | None = entry("Of the multipliers of deviations; null if the motion is not periodic.")
+
+
+def _at_each(name: str, text: str, key: str = "", **rules: Any) -> property:
+    """Return the entry of what the linear systems have at each time."""
+    return property(computed(text, key or name, **rules)(lambda motion: [getattr(each, name) for each in motion.at]))
+
+
+def _by_rates(name: str, text: str) -> property:
+    """Return the entry of matrices at each time by time derivatives of controls."""
+    stacked = lambda motion: {rate: [getattr(each, name)[rate] for each in motion.at] for rate in RATES}  # noqa: E731
+    return property(computed(text, name, **by_rates(MATRICES))(stacked))
+
+
+def _shared(name: str, text: str) -> property:
+    """Return the entry of names that the linear systems share."""
+    rules = {"type": "array", "items": {"type": "string"}, "uniqueItems": True}
+    return property(computed(text, name, **rules)(lambda motion: getattr(motion.at[0], name)))
 
 
 @dataclass(frozen=True, repr=False)
-class LinearizedMotion(Shown):
+class LinearizedMotion(Documented, Shown):
     """A linear system along a motion.
 
     x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du''.
@@ -134,12 +161,21 @@ class LinearizedMotion(Shown):
     ([0.0, 0.5, 1.0], (3, 2, 2))
     """
 
-    scene: str
+    scene: str = entry("Name that the scene is assigned to.")
     at: tuple[Linearization, ...]
-    transition: Matrix
-    error: float
-    floquet: Floquet | None
-    free: FreeDeviations | None
+    transition: Matrix = entry("Phi at each time: x(t) = Phi(t) x(t0) for controls that do not deviate.", **MATRICES)
+    error: float = entry("Estimated relative error of Phi at the last time.", minimum=0)
+    floquet: Floquet | None = entry("Null if the motion and its equations do not repeat after the last time.")
+    free: FreeDeviations | None = entry("Null if the motion is not free.")
+
+    _coordinates = _shared("coordinates", "The n coordinates.")
+    _controls = _shared("controls", "The r controls, whose deviations are inputs.")
+    _outputs = _shared("outputs", "What C and D give the deviations of.")
+    _points = _at_each("point", "Values of all names in the equations at each time.", "points", **POINTS)
+    _basis = _at_each("basis", "N at each time, n rows of m numbers; it moves along with the motion.", **MATRICES)
+    _B = _by_rates("B", "What u, du/dt and ddu/dt2 add to dx/dt at each time.")
+    _C = _at_each("C", "Outputs by x at each time.", **MATRICES)
+    _D = _by_rates("D", "Outputs by u, du/dt and ddu/dt2 at each time.")
 
     def __len__(self) -> int:
         return len(self.at)
@@ -149,11 +185,13 @@ class LinearizedMotion(Shown):
         return self.at[k]
 
     @property
+    @computed("The k times.", **VECTOR)
     def times(self) -> Vector:
         """Times, shape (k,)."""
         return np.array([each.at for each in self.at])
 
     @property
+    @computed("Of x = (xi, eta) at each time, 2m rows.", **MATRICES)
     def A(self) -> Matrix:
         """The matrices A, shape (k, 2m, 2m)."""
         return np.array([each.A for each in self.at])
@@ -181,41 +219,6 @@ class LinearizedMotion(Shown):
             There is no such output.
         """
         return np.array([each.output_row(output) @ phi for each, phi in zip(self.at, self.transition, strict=True)])
-
-    def document(self) -> dict[str, Any]:
-        """Return the content of the JSON document without format and version.
-
-        Returns
-        -------
-        dict
-        """
-        floquet, free = self.floquet, self.free
-        return {
-            "scene": self.scene,
-            "times": self.times.tolist(),
-            **{name: list(getattr(self.at[0], name)) for name in ("coordinates", "controls", "outputs")},
-            "points": [dict(each.point) for each in self.at],
-            **{name: [getattr(each, name).tolist() for each in self.at] for name in ("basis", "A", "C")},
-            **{
-                name: {rate: [getattr(each, name)[rate].tolist() for each in self.at] for rate in self.at[0].B}
-                for name in ("B", "D")
-            },
-            "transition": self.transition.tolist(),
-            "error": self.error,
-            "floquet": floquet
-            and {
-                "period": floquet.period,
-                "multipliers": np.stack([floquet.multipliers.real, floquet.multipliers.imag], axis=-1).tolist(),
-                "stability": str(floquet.stability),
-            },
-            "free": free
-            and {
-                "staying": free.staying,
-                "sizes": free.sizes.tolist(),
-                "basis": free.basis.tolist(),
-                "stability": free.stability and str(free.stability),
-            },
-        }
 
 
 def linearize_along(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
@@ -467,7 +470,7 @@ def _floquet(problem: MotionProblem, nodes: _Nodes) -> Floquet | None:
     if not nodes.duration or not nodes.repeats():
         return None
     monodromy = _monodromy(nodes)
-    values = np.linalg.eigvals(monodromy)
+    values = np.linalg.eigvals(monodromy).astype(complex)
     return Floquet(nodes.duration, values[np.argsort(-np.abs(values), kind="stable")], _stability_of(monodromy))
 
 

@@ -49,7 +49,7 @@ class Branches(Shown):
         return [found.controls[self.control] for found in self.at]
 
     def documents(self) -> list[dict[str, Any]]:
-        """Return `Equilibria.document` for each value.
+        """Return the content of the JSON document for each value.
 
         Returns
         -------

@@ -14,20 +14,22 @@ Otherwise the stability is undecided.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import MotionProblem, require_analytic, require_laws
+from ..schema import PAIRS
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
+from ..structs import Documented, computed, entry
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .tangent import Tangent
@@ -83,17 +85,27 @@ class Equilibrium:
         Exact values of coordinates and multipliers, if the equations are polynomial and small.
     """
 
-    name: str
-    coordinates: Mapping[str, float]
-    multipliers: Mapping[str, float]
-    stability: Stability
-    isolated: bool
+    name: str = entry("e1, e2, ...")
+    coordinates: Mapping[str, float] = entry("Value of each coordinate, by its name.")
+    multipliers: Mapping[str, float] = entry("Value of each multiplier, by its name.")
+    stability: Stability = entry("By the second variation of V - T0, or by the eigenvalues.")
+    isolated: bool = entry("Whether no others are next to it; false where that is not known.")
     linearization: Linearization
-    exact: "Mapping[str, Expr]" = field(default_factory=dict)
+    exact: "Mapping[str, Expr]" = entry(
+        "Exact values, if the equations are polynomial and small. CRootOf(f, k) is the k-th root of f.",
+        dict,
+        type="object",
+        additionalProperties={"type": "string"},
+    )
+
+    @property
+    @computed("Of A, real and imaginary parts, the slowest first.", "eigenvalues", **PAIRS)
+    def _eigenvalues(self) -> Vector:
+        return self.linearization.eigenvalues
 
 
 @dataclass(frozen=True, repr=False)
-class Equilibria(Shown):
+class Equilibria(Documented, Shown):
     """Equilibria that were found: all of them if `complete` is True.
 
     Attributes
@@ -125,16 +137,17 @@ class Equilibria(Shown):
     True
     """
 
-    scene: str
-    controls: Mapping[str, float]
-    starts: int
-    found: tuple[Equilibrium, ...]
-    more: int
-    singular: int
-    turns: tuple[str, ...]
-    count: int | None
+    scene: str = entry("Name that the scene is assigned to.")
+    controls: Mapping[str, float] = entry("Values of the controls.")
+    starts: int = entry("Random starts of Newton's method.", minimum=1)
+    found: tuple[Equilibrium, ...] = entry("Those found; there may be others unless complete is true.")
+    more: int = entry("Further solutions of the families of those that are not isolated.", minimum=0)
+    singular: int = entry("Solutions in or near singular configurations, which are not classified.", minimum=0)
+    turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
+    count: int | None = entry("Number of real solutions, exactly; null if it is not known.", minimum=0)
 
     @property
+    @computed("Whether those found are all, up to whole turns.")
     def complete(self) -> bool:
         """True if these are all equilibria, up to whole turns."""
         return len(self.found) == self.count and all(each.isolated for each in self.found)
@@ -151,36 +164,6 @@ class Equilibria(Shown):
 
     def __iter__(self) -> Iterator[Equilibrium]:
         return iter(self.found)
-
-    def document(self) -> dict[str, Any]:
-        """Return the content of ``holonom equilibria --json`` without format and version.
-
-        Returns
-        -------
-        dict
-        """
-        return {
-            "scene": self.scene,
-            "controls": dict(self.controls),
-            "starts": self.starts,
-            "more": self.more,
-            "singular": self.singular,
-            "turns": list(self.turns),
-            "count": self.count,
-            "complete": self.complete,
-            "found": [
-                {
-                    "name": each.name,
-                    "coordinates": dict(each.coordinates),
-                    "multipliers": dict(each.multipliers),
-                    "exact": {name: str(value) for name, value in each.exact.items()},
-                    "stability": str(each.stability),
-                    "isolated": each.isolated,
-                    "eigenvalues": [[value.real, value.imag] for value in each.linearization.eigenvalues.tolist()],
-                }
-                for each in self.found
-            ],
-        }
 
 
 def find_equilibria(

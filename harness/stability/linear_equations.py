@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..described import SystemTitle
 from ..documents import ask
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
@@ -22,9 +23,10 @@ from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
+from ..schema import Names
 from ..simulation.matrices import INDEXED, Matrix, Vector
 from ..source import Source
-from ..structs import structured
+from ..structs import entry
 
 ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
@@ -32,41 +34,36 @@ GROUPS = ("q", "v", "a", "u", "du", "ddu")
 
 @dataclass(frozen=True)
 class LinearEquations:
-    """The linearised equations of a scene.
+    """The linearised equations of a scene."""
 
-    Attributes
-    ----------
-    coordinates, multipliers, controls : tuple of str
-        Names: n, g and r of them. The controls have a law.
-    found : tuple of str
-        Names of controls in forces that servo-constraints find.
-    drives : int
-        Number of controls in constraints that servo-constraints find. They are the last coordinates, without mass.
-    servo : int
-        Number of constraints, the last ones, without reactions.
-    tables : tuple of Table
-        Tables of the law.
-    forced : bool
-        Whether forces without a potential act.
-    law : Program or None
-        Of t and tables: u, dot u, ddot u, or None where a control has no law.
-    program : Program
-        Of (t, q, dot q, ddot q, lambda, u, dot u, ddot u). Found controls and drives follow those with a law.
-    outputs : tuple of str
-        Names of what the scene observes itself.
-    """
-
-    coordinates: tuple[str, ...]
-    multipliers: tuple[str, ...]
-    controls: tuple[str, ...]
-    found: tuple[str, ...]
-    drives: int
-    servo: int
-    tables: tuple[Table, ...]
-    forced: bool
-    law: Program | None
-    program: Program
-    outputs: tuple[str, ...]
+    system: SystemTitle = entry("The system.")
+    scene: str = entry("Name that the scene is assigned to.")
+    title: str = entry("Title of the scene.")
+    coordinates: Names = entry("The n coordinates.")
+    multipliers: Names = entry("The g multipliers, one for each constraint.")
+    controls: Names = entry("The controls with a law.")
+    found: Names = entry(
+        "Controls in forces that servo-constraints find. They follow those with a law among the inputs."
+    )
+    drives: int = entry(
+        "Number of controls in constraints that servo-constraints find. They are the last coordinates, and their "
+        "drives the last controls.",
+        minimum=0,
+    )
+    servo: int = entry(
+        "Number of servo-constraints, the last of the constraints. Their multipliers are zero.", minimum=0
+    )
+    tables: tuple[Table, ...] = entry("Tables of the law, as of a motion problem.")
+    forced: bool = entry("Whether forces without a potential act.")
+    law: Program | None = entry(
+        "Program of t and the tables' inputs: u, dot(u), ddot(u) of the controls with a law; null if one has none."
+    )
+    program: Program = entry(
+        "Program of (t, q, dot q, ddot q, lambda, u, dot u, ddot u): equation[s], constraint[b], rate[b], "
+        "acceleration[b], their gradients equation_by_q[s,k] and so on by q, v, a, u, du and ddu, and "
+        "A_rate[s,k]; what is absent is zero."
+    )
+    outputs: tuple[str, ...] = entry("What the scene observes under names of its own.")
 
     @cached_property
     def _evaluate(self) -> NumpyFunction:
@@ -207,4 +204,4 @@ def linear_equations(source: Source, request: Request) -> LinearEquations:
         As `holonom.documents.ask`, or a parameter has no value.
     """
     text = ask(Document.LINEARIZATION, source, request.scene, settings=request.settings)
-    return structured(LinearEquations, read(Document.LINEARIZATION, text))
+    return read(Document.LINEARIZATION, text, LinearEquations)

@@ -32,6 +32,7 @@ from ..program.motion_program import names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.rewriting import computing
 from ..program.sign_pattern import drawing_with_values
+from ..schema import MATRIX, PAIRS, VECTOR, Names, lists_of
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
@@ -39,6 +40,7 @@ from ..simulation.nominal import nominal_of
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
+from ..structs import Documented, computed, entry
 from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
 
@@ -52,8 +54,25 @@ ROUNDED = 16 * np.finfo(float).eps  # rounding errors of A, relative
 UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
 
 
+def by_rates(matrix: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return the schema of matrices by controls and their time derivatives.
+
+    Parameters
+    ----------
+    matrix : mapping
+        Schema of one of them.
+
+    Returns
+    -------
+    dict
+    """
+    texts = ("of the controls", "of the first derivatives of the controls", "of the second derivatives of the controls")
+    properties = {rate: {"description": f"Matrix {text}.", **matrix} for rate, text in zip(RATES, texts, strict=True)}
+    return {"type": "object", "properties": properties, "required": [*RATES], "additionalProperties": False}
+
+
 @dataclass(frozen=True, repr=False)
-class Linearization(Shown):
+class Linearization(Documented, Shown):
     """A linear system x' = A x + B_u du + B_du du' + B_ddu du''.
 
     Its output is y = C x + D_u du + ..., and its state x = (xi, eta).
@@ -95,29 +114,34 @@ class Linearization(Shown):
     (('x',), 3.132092)
     """
 
-    scene: str
-    at: float | None
-    at_rest: bool
-    coordinates: tuple[str, ...]
-    leading: tuple[str, ...]
-    controls: tuple[str, ...]
-    outputs: tuple[str, ...]
-    point: Mapping[str, float]
-    mass: Matrix
-    basis: Matrix
-    A: Matrix
-    B: Mapping[str, Matrix]
-    C: Matrix
-    D: Mapping[str, Matrix]
+    scene: str = entry("Name that the scene is assigned to.")
+    at: float | None = entry("The time; null for an equilibrium.")
+    at_rest: bool = entry(
+        "Whether velocities and accelerations vanish there; along a motion, eigenvalues belong to one time."
+    )
+    coordinates: Names = entry("The n coordinates.")
+    leading: Names = entry("The m coordinates that the tangent coordinates belong to.")
+    controls: Names = entry("The r controls, whose deviations are inputs.")
+    outputs: Names = entry("What C and D give the deviations of.")
+    point: Mapping[str, float] = entry(
+        "Time, coordinates, velocities, accelerations, multipliers, and controls with their derivatives, by name."
+    )
+    mass: Matrix = entry("The mass matrix, n rows.", **MATRIX)
+    basis: Matrix = entry("N, n rows of m numbers: the coordinates deviate by N xi, N^T A N = 1.", **MATRIX)
+    A: Matrix = entry("Of x = (xi, eta), 2m rows.", **MATRIX)
+    B: Mapping[str, Matrix] = entry("What u, du/dt and ddu/dt2 add to dx/dt.", **by_rates(MATRIX))
+    C: Matrix = entry("Outputs by x.", **MATRIX)
+    D: Mapping[str, Matrix] = entry("Outputs by u, du/dt and ddu/dt2.", **by_rates(MATRIX))
     drawing: Drawing | None
 
     @cached_property
     def _modes(self) -> tuple[Vector, Matrix]:
         values, vectors = np.linalg.eig(self.A)
         order = np.lexsort((values.imag, -values.real, np.abs(values)))
-        return values[order], vectors[:, order]
+        return values[order].astype(complex), vectors[:, order].astype(complex)
 
     @property
+    @computed("Of A, real and imaginary parts, the slowest first.", **PAIRS)
     def eigenvalues(self) -> Vector:
         """Eigenvalues of A, shape (2m,), complex, the slowest first."""
         return self._modes[0]
@@ -136,6 +160,9 @@ class Linearization(Shown):
         return np.minimum(moved[nearest], np.sqrt(ROUNDED) * np.linalg.norm(self.A, 2))
 
     @property
+    @computed(
+        "Coordinates of the eigenvectors, n rows of 2m complex numbers; the largest of each is 1.", **lists_of(PAIRS)
+    )
     def modes(self) -> Matrix:
         """Coordinates of the eigenvectors, shape (n, 2m), complex.
 
@@ -147,6 +174,7 @@ class Linearization(Shown):
         return shapes / np.where(peaks == 0, 1.0, peaks)
 
     @property
+    @computed("|eigenvalue|/(2 pi).", **VECTOR)
     def frequencies(self) -> Vector:
         """Undamped frequencies ``|eigenvalue|/(2 pi)``, shape (2m,).
 
@@ -155,12 +183,14 @@ class Linearization(Shown):
         return np.abs(self.eigenvalues) / (2 * np.pi)
 
     @property
+    @computed("-Re/|eigenvalue|.", **VECTOR)
     def damping(self) -> Vector:
         """Damping ratios, ``-Re/|eigenvalue|``, shape (2m,), zero for zero eigenvalues."""
         sizes = np.abs(self.eigenvalues)
         return -self.eigenvalues.real / np.where(sizes > 0, sizes, 1.0) + 0.0
 
     @property
+    @computed("Kalman's, at most 2m.", minimum=0)
     def controllable_rank(self) -> int:
         """Kalman's rank of controllability, at most 2m, in floating-point numbers.
 
@@ -169,6 +199,11 @@ class Linearization(Shown):
         """
         b_u, b_du, b_ddu = (self.B[rate] for rate in RATES)
         return _reachable(self.A, b_u + self.A @ (b_du + self.A @ b_ddu))
+
+    @property
+    @computed("Kalman's, by all outputs.", "observable_rank", minimum=0)
+    def _observable_rank(self) -> int:
+        return self.observable_rank()
 
     def observable_rank(self, outputs: Sequence[str] | None = None) -> int:
         """Kalman's rank of observability, at most 2m.
@@ -265,33 +300,6 @@ class Linearization(Shown):
         from ..figures.style import Picture
 
         return Picture(modes_figure(self))
-
-    def document(self) -> dict[str, Any]:
-        """Return the content of ``holonom linearize --json`` without format and version.
-
-        Returns
-        -------
-        dict
-        """
-
-        def pairs(numbers: Matrix) -> list[Any]:
-            return np.stack([numbers.real, numbers.imag], axis=-1).tolist()
-
-        return {
-            "scene": self.scene,
-            "at": self.at,
-            "at_rest": self.at_rest,
-            **{name: list(getattr(self, name)) for name in ("coordinates", "leading", "controls", "outputs")},
-            "point": dict(self.point),
-            **{name: getattr(self, name).tolist() for name in ("mass", "basis", "A", "C")},
-            **{name: {rate: each.tolist() for rate, each in getattr(self, name).items()} for name in ("B", "D")},
-            "eigenvalues": pairs(self.eigenvalues),
-            "frequencies": self.frequencies.tolist(),
-            "damping": self.damping.tolist(),
-            "modes": pairs(self.modes),
-            "controllable_rank": self.controllable_rank,
-            "observable_rank": self.observable_rank(),
-        }
 
     def _rows(self, outputs: Sequence[str] | None) -> list[int]:
         wanted = self.outputs if outputs is None else outputs

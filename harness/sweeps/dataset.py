@@ -20,6 +20,10 @@ from ..failures import ErrorKind, HolonomError
 from ..files import DRAFTS, append_line, write_whole
 from ..formats import Publication, published, require
 from ..language import translatable
+from ..program.request import Solve
+from ..simulation.request import Stabilization
+from ..structs import entry
+from .axes import Distribution
 
 if TYPE_CHECKING:
     import pyarrow
@@ -61,13 +65,69 @@ class Chunk:
         return {"part": self.name, "first": self.first, "last": self.last - 1, "sha256": checksum}
 
 
+@dataclass(frozen=True)
+class SweptScene:
+    """The scene of a sweep."""
+
+    file: str = entry("Path of the scene file, or - for standard input. A sweep is the same if its file has moved.")
+    name: str = entry("Of the scene.")
+    title: str = entry("Of the scene.")
+    system: str = entry("Title of the system.")
+    text: str = entry("The scene file.")
+    sha256: str = entry("Of the text.")
+    motion_sha256: str = entry("Of what was derived from it: other files may come into it.")
+
+
+@dataclass(frozen=True)
+class SweptParameter:
+    """A parameter that varies."""
+
+    name: str = entry("Of the parameter.")
+    kind: str = entry(
+        "A grid or list, or what a sample is drawn from.", enum=["values", *(str(each) for each in Distribution)]
+    )
+    asked: str = entry("As it stands on the command line.")
+
+
+@dataclass(frozen=True)
+class SweptOptions:
+    """Options of the motions of a sweep."""
+
+    tol: float = entry("Tolerance of a step.")
+    until: str | None = entry("The last time; null for the end of the scene's time span.")
+    stabilization: Stabilization = entry("Stabilization method of the constraints.")
+    solve: Solve = entry("How the multipliers are solved for.")
+
+
+@dataclass(frozen=True)
+class SweepDocument:
+    """A sweep: one motion for many values of its parameters."""
+
+    scene: SweptScene = entry("What was swept.")
+    settings: Mapping[str, str] = entry("Numbers that were set for all rows.")
+    parameters: tuple[SweptParameter, ...] = entry(
+        "What varies, in the order of its columns; the last of the values varies fastest."
+    )
+    size: int | None = entry("Members of the sample; null without one.")
+    seed: int | None = entry("Of the sample; null without one.")
+    rows: int = entry("How many there are.")
+    chunk: int = entry("Rows of a file.")
+    keep: tuple[str, ...] = entry("Recorded quantities of each motion.")
+    columns: tuple[str, ...] = entry("Of the files.")
+    options: SweptOptions = entry("How the motions are integrated.")
+    versions: Mapping[str, str] = entry("What computed it.")
+    statuses: Mapping[str, int] | None = entry(
+        "How many rows came about how; of the document that a command publishes.", None, optional=True
+    )
+
+
 class SweepFolder:
     """A folder that holds a sweep, or is to hold one.
 
     Parameters
     ----------
-    document : mapping
-        Description of the sweep, in the form of the schema `sweep.json`.
+    document : SweepDocument
+        Description of the sweep.
 
     Raises
     ------
@@ -75,7 +135,7 @@ class SweepFolder:
         It holds another sweep, or other things, or it cannot be written.
     """
 
-    def __init__(self, path: Path, document: Mapping[str, Any]) -> None:
+    def __init__(self, path: Path, document: SweepDocument) -> None:
         self.path, self.document = path, published(Publication.SWEEP, document)
 
     @contextmanager
@@ -192,7 +252,7 @@ def read_document(folder: Path) -> dict[str, Any]:
     Returns
     -------
     dict of str to object
-        Content of ``_sweep.json``. See the schema ``sweep``.
+        Content of ``_sweep.json``. See `SweepDocument`.
 
     Raises
     ------
@@ -203,7 +263,7 @@ def read_document(folder: Path) -> dict[str, Any]:
         document = json.loads((folder / DOCUMENT).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         raise HolonomError(ErrorKind.UNRELATED_FOLDER, folder) from None
-    require(Publication.SWEEP, document)
+    require(Publication.SWEEP, document, SweepDocument)
     return document
 
 

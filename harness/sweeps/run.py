@@ -18,7 +18,7 @@ from ..sandbox import Limits
 from ..simulation.engines.taylor import checked_tolerance
 from ..source import Source, source_of
 from .axes import Axes, Grid, Listed, Sample
-from .dataset import SweepFolder, chunks_of
+from .dataset import SweepDocument, SweepFolder, SweptOptions, SweptParameter, SweptScene, chunks_of
 from .outputs import Kind
 from .request import SweepRequest
 from .rows import Plan, RowMaker
@@ -43,7 +43,7 @@ class Sweep:
     path : Path
         The folder.
     document : mapping
-        What was swept, and how. See the schema ``sweep``.
+        What was swept, and how. See `holonom.sweeps.dataset.SweepDocument`.
     mended : tuple of str
         Files that were there and not as they were written: they have been computed again.
     """
@@ -190,36 +190,32 @@ def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
         )
 
 
-def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> dict[str, Any]:
+def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> SweepDocument:
     text, problem, axes = file.read_text(encoding="utf-8"), maker.plan.problem, wanted.axes
-    return {
-        "scene": {
-            "file": wanted.called or str(file),
-            "name": problem.scene,
-            "title": problem.title,
-            "system": problem.system,
-            "text": text,
-            "sha256": hashlib.sha256(text.encode()).hexdigest(),
-            "motion_sha256": hashlib.sha256(derived.encode()).hexdigest(),
-        },
-        "settings": dict(request.settings),
-        "parameters": [_axis(axis) for axis in (*axes.values, *axes.samples)],
-        "size": axes.size if axes.samples else None,
-        "seed": axes.seed if axes.samples else None,
-        "rows": axes.rows,
-        "chunk": wanted.chunk,
-        "keep": [output.text for output in wanted.outputs],
-        "columns": ["row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "note"],
-        "options": {
-            "tol": wanted.tol,
-            "until": None if wanted.until is None else str(wanted.until),
-            "stabilization": str(wanted.stabilization),
-            "solve": str(request.solve),
-        },
-        "versions": {name: version(name) for name in PACKAGES},
-    }
+    return SweepDocument(
+        SweptScene(
+            file=wanted.called or str(file),
+            name=problem.scene,
+            title=problem.title,
+            system=problem.system.title,
+            text=text,
+            sha256=hashlib.sha256(text.encode()).hexdigest(),
+            motion_sha256=hashlib.sha256(derived.encode()).hexdigest(),
+        ),
+        settings=request.settings,
+        parameters=tuple(map(_axis, (*axes.values, *axes.samples))),
+        size=axes.size if axes.samples else None,
+        seed=axes.seed if axes.samples else None,
+        rows=axes.rows,
+        chunk=wanted.chunk,
+        keep=tuple(output.text for output in wanted.outputs),
+        columns=("row", *axes.names, *maker.columns, str(Kind.RESIDUAL), "status", "note"),
+        options=SweptOptions(
+            wanted.tol, None if wanted.until is None else str(wanted.until), wanted.stabilization, request.solve
+        ),
+        versions={name: version(name) for name in PACKAGES},
+    )
 
 
-def _axis(axis: Grid | Listed | Sample) -> dict[str, str]:
-    kind = str(axis.distribution) if isinstance(axis, Sample) else "values"
-    return {"name": axis.name, "kind": kind, "asked": axis.text}
+def _axis(axis: Grid | Listed | Sample) -> SweptParameter:
+    return SweptParameter(axis.name, str(axis.distribution) if isinstance(axis, Sample) else "values", axis.text)

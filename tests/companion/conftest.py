@@ -40,7 +40,6 @@ def copied(folder):
     for name in ("tests", "examples", "maxima"):
         (folder / name).symlink_to(REPOSITORY / name)
     texts = Path(shutil.copytree(SOURCES, folder / "harness" / "companion"))
-    (texts.parent / "schemas").symlink_to(REPOSITORY / "harness" / "schemas")
     return texts
 
 

@@ -7,6 +7,7 @@ from types import ModuleType
 import numpy as np
 from scipy.interpolate import CubicSpline
 
+from holonom.described import SystemTitle
 from holonom.program.model import Model, scene_model
 from holonom.program.motion_program import Program
 from holonom.program.numpy_function import NumpyFunction
@@ -23,8 +24,7 @@ def model_of_program(written: Program) -> Model:
     """A model whose motion is a program: its first input is the time, the others are parameters."""
     nothing = replace(written, assignments=(), outputs={})
     return Model(
-        system="",
-        source="",
+        system=SystemTitle("", None),
         scene="scene",
         title="",
         coordinates=(),

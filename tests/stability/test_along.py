@@ -9,6 +9,7 @@ from scipy.integrate import solve_ivp
 import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
+from holonom.stability.along import LinearizedMotion
 from holonom.stability.equilibria import Stability
 
 # ---- periodic motions --------------------------------------------------------------------------------------------
@@ -188,7 +189,7 @@ def test_deviations_that_change_too_fast_are_refused(monkeypatch):
 def test_the_command(holonom_here, write_scene):
     answer = holonom_here("linearize-along", write_scene(f"load(holonom)$\n{KAPITZA}"), "--samples", "3", "--json", "-")
     document = json.loads(answer.stdout)
-    require(Publication.LINEARIZED_ALONG, document)
+    require(Publication.LINEARIZED_ALONG, document, LinearizedMotion)
     assert document["times"] == [0, 0.5, 1]
     assert document["floquet"]["stability"] == str(Stability.UNDECIDED)
     table = holonom_here("linearize-along", write_scene(f"load(holonom)$\n{THROWN}"), "--samples", "3")

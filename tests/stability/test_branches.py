@@ -8,7 +8,7 @@ import pytest
 import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
-from holonom.stability.equilibria import Stability
+from holonom.stability.equilibria import Equilibria, Stability
 
 HOOP = """load(holonom)$
 system : holonomic_system(coordinates = [phi], controls = [u], kinetic_energy = dot(phi)^2/2,
@@ -62,7 +62,7 @@ def test_the_command_writes_a_list_of_documents(holonom_here, write_scene):
     done = holonom_here("equilibria", write_scene(HOOP), "--over", "u=3:4:2", "--starts", "40", "--json", "-")
     documents = json.loads(done.stdout)
     for each in documents:
-        require(Publication.EQUILIBRIA, each)
+        require(Publication.EQUILIBRIA, each, Equilibria)
     assert [len(each["found"]) for each in documents] == [2, 4]
 
 

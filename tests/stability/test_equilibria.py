@@ -15,7 +15,7 @@ from test_linearization import DOUBLE_PENDULUM
 import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
-from holonom.stability.equilibria import Stability
+from holonom.stability.equilibria import Equilibria, Stability
 from holonom.stability.real_solutions import _count_real_zeros, _standard_monomials
 
 START = "initial_state = [{start}], time_span = [0, 1])$\n"
@@ -161,7 +161,7 @@ def test_equations_with_the_time_are_refused():
 def test_the_command(holonom_here):
     answer = holonom_here("equilibria", "examples/pendulum.mac", "--control", "u=2", "--json", "-")
     found = json.loads(answer.stdout)
-    require(Publication.EQUILIBRIA, found)
+    require(Publication.EQUILIBRIA, found, Equilibria)
     assert (answer.returncode, found["format"], found["controls"]) == (0, "holonom-equilibria", {"u": 2.0})
     assert [each["stability"] for each in found["found"]] == ["stable", "unstable"]
 

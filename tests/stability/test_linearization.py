@@ -12,7 +12,7 @@ import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, require
 from holonom.program.numpy_function import NumpyFunction
-from holonom.stability.linearization import state_at
+from holonom.stability.linearization import Linearization, state_at
 
 # ---- textbook cases, at rest -----------------------------------------------------------------------------------------
 
@@ -329,7 +329,7 @@ def test_a_state_that_sticks_or_turns_is_refused(speed, at):
 def test_the_command(holonom_here):
     answer = holonom_here("linearize", "examples/pendulum.mac", "--at", "1/2", "--json", "-")
     document = json.loads(answer.stdout)
-    require(Publication.LINEARIZED, document)
+    require(Publication.LINEARIZED, document, Linearization)
     assert (answer.returncode, document["at"], document["at_rest"], document["leading"]) == (0, 0.5, False, ["x"])
     table = holonom_here("linearize", "examples/linkage.mac", "--equilibrium", "e2")
     assert (table.returncode, "± 3.43103 i" in table.stdout) == (0, True)

@@ -7,8 +7,10 @@ from enum import StrEnum
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...explanations import advice
 from ...language import translatable
 from ...simulation.hard_cases import Difficulty
+from ...structs import computed, entry, group
 
 MOST = 16.0  # digits of a double
 
@@ -32,27 +34,19 @@ class Outcome(StrEnum):
 class Result:
     """The correct digits of one method, or none if the result is only yes or no."""
 
-    method: str
-    quantity: str
-    digits: float | None
-    outcome: Outcome
+    method: str = entry("Name of the method.")
+    quantity: str = entry("Quantity that is compared.")
+    digits: float | None = entry("Correct decimal digits; null for a question of yes or no.", minimum=0, maximum=16)
+    outcome: Outcome = entry("A method that is there for comparison may lose it.")
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """Correct digits as a case becomes harder.
+    """Correct digits as a case becomes harder."""
 
-    Attributes
-    ----------
-    variable : str
-        Label of the parameter that makes it harder, as on an axis.
-    digits : mapping of str to tuple of float
-        By method, one number for each value.
-    """
-
-    variable: str
-    values: tuple[float, ...]
-    digits: Mapping[str, tuple[float, ...]]
+    variable: str = entry("Label of the parameter that makes it harder, as on an axis.")
+    values: tuple[float, ...] = entry("Values of that parameter.")
+    digits: Mapping[str, tuple[float, ...]] = entry("By method, one number for each value.")
 
 
 Findings = Iterator[Result | Sweep]
@@ -62,24 +56,38 @@ Findings = Iterator[Result | Sweep]
 class Case:
     """A hard case of the test set: its reference solution and its measurement."""
 
-    name: str
-    kind: Difficulty
-    truth: str
+    name: str = entry("Name of the case.", key="case")
+    kind: Difficulty = entry("What makes it hard.")
+    truth: str = entry("What the methods are measured against.")
     examine: Callable[[Extent], Findings]
+
+    @property
+    @computed("What to do in a case of this kind.")
+    def advice(self) -> str:
+        """Advice for cases of this kind."""
+        return advice(self.kind)
 
 
 @dataclass(frozen=True)
 class CaseReport:
     """A hard case with its results."""
 
-    case: Case
-    results: tuple[Result, ...]
-    sweep: Sweep | None
+    case: Case = group()
+    results: tuple[Result, ...] = entry("Results of the methods.")
+    sweep: Sweep | None = entry("Correct digits as the case becomes harder; null for a single case.")
 
     @property
+    @computed("A method of Holonom's does not hold what it should; the exit status is then 1.")
     def fails(self) -> bool:
         """True if a method of Holonom fails a requirement."""
         return any(result.outcome is Outcome.FAILS for result in self.results)
+
+
+@dataclass(frozen=True)
+class CaseReports:
+    """Correct digits of each method in the hard cases."""
+
+    cases: tuple[CaseReport, ...] = entry("The register's cases, in its order.")
 
 
 def examined(case: Case, extent: Extent) -> CaseReport:

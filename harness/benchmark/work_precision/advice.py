@@ -3,14 +3,13 @@
 The growth of a method's time with every digit is its price.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...structs import computed, entry
 from .measurement import WHOLE_MOTION, Measurement
 
 ASKED_DIGITS = (3, 6, 9, 12, 15, 30)
@@ -18,22 +17,37 @@ FEWEST = 3  # points that a slope is drawn through
 
 
 @dataclass(frozen=True)
+class CheapestRun:
+    """The shortest run with a number of correct digits."""
+
+    method: str = entry("Name of the method.")
+    setting: str = entry("Setting of the method.")
+    seconds: float = entry("Run time in seconds.")
+    error: float = entry("Relative error.")
+
+
+@dataclass(frozen=True)
 class Advice:
     """The cheapest method for a number of digits, or None."""
 
-    digits: int
+    digits: int = entry("Number of digits required.")
     cheapest: Measurement | None
+
+    @property
+    @computed("The shortest run with this many correct digits; null if there is none.", "cheapest")
+    def _run(self) -> CheapestRun | None:
+        found = self.cheapest
+        return found and CheapestRun(found.method, found.setting, found.seconds, found.error)
 
 
 @dataclass(frozen=True)
 class Price:
     """The cost of one more digit."""
 
-    method: str
-    factor: float  # by which the time grows
-    # first_digits, last_digits: between which that was found
-    first_digits: float
-    last_digits: float
+    method: str = entry("Name of the method.")
+    factor: float = entry("Factor by which the time grows.", exclusiveMinimum=0)
+    first_digits: float = entry("Fewest digits of the range of the factor.")
+    last_digits: float = entry("Most digits of the range of the factor.")
 
 
 def cheapest_methods(measurements: Sequence[Measurement]) -> Iterator[Advice]:

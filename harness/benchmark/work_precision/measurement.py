@@ -8,6 +8,8 @@ from typing import Any
 
 import mpmath
 
+from ...structs import entry
+
 State = Sequence[mpmath.mpf]
 
 WORKING_DIGITS = 300  # more than any state has
@@ -73,6 +75,9 @@ def _largest(values: State) -> mpmath.mpf:
     return max(map(abs, values))
 
 
+EXACT_TIME = "^-?[0-9]+(/[0-9]+)?$"
+
+
 class Group(StrEnum):
     """The group in which a method is compared."""
 
@@ -113,20 +118,22 @@ class BenchmarkCase:
 class Measurement:
     """The error, time and work of a benchmark case."""
 
-    group: Group
-    method: str
-    setting: str
-    time: Fraction
-    error: float  # as `relative_error` defines it
-    seconds: float  # of the shortest run
-    preparation_seconds: float | None  # compiling and the like; None where nothing is prepared apart
-    operations: int
+    group: Group = entry("Kind of method or of setting compared.")
+    method: str = entry("Name of the method.")
+    setting: str = entry("Setting of the method, such as its tolerance.")
+    time: Fraction = entry("Time at which the error is measured.", pattern=EXACT_TIME)
+    error: float = entry("Relative, in the maximum norm.", exclusiveMinimum=0)
+    seconds: float = entry("Run time in seconds.", exclusiveMinimum=0)
+    preparation_seconds: float | None = entry(
+        "Time of the preparation in seconds; null if it is not measured.", minimum=0
+    )
+    operations: int = entry("Number of arithmetic operations.", minimum=0)
 
 
 @dataclass(frozen=True)
 class Omission:
     """A benchmark case that was not measured, with the reason."""
 
-    method: str
-    setting: str
-    reason: str
+    method: str = entry("Name of the method.")
+    setting: str = entry("Setting of the method.")
+    reason: str = entry("Reason of the omission.")

@@ -4,8 +4,6 @@ The two runs differ in the digits that they compute with and in the order of the
 tolerance. Neither projects.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -15,6 +13,7 @@ from ...program.expense import order_for
 from ...program.precision import read_precision
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
+from ...structs import entry
 from .engines import state_of
 from .measurement import State, relative_error
 
@@ -31,13 +30,11 @@ class Reference:
     """States of the motion, known to many digits."""
 
     states: Mapping[Fraction, State]  # coordinates and velocities at each time asked for
-    # digits, confirming_digits: of the two runs
-    digits: int
-    confirming_digits: int
-    # order, confirming_order: of their expansions
-    order: int
-    confirming_order: int
-    difference: float  # the largest relative difference of the two
+    digits: int = entry("Digits of the reference run.")
+    order: int = entry("Order of its Taylor expansion.")
+    confirming_digits: int = entry("Digits of the run that confirms it.")
+    confirming_order: int = entry("Order of the run that confirms it.")
+    difference: float = entry("Largest relative difference of the two runs.", minimum=0)
 
     def can_tell(self, error: float) -> bool:
         """Return True if an error is larger than the uncertainty of the reference.
@@ -55,7 +52,7 @@ class Reference:
         return error > SURER * self.difference
 
 
-def find_reference(problem: MotionProblem, times: Sequence[Fraction], digits: int) -> Reference:
+def find_reference(problem: "MotionProblem", times: Sequence[Fraction], digits: int) -> Reference:
     """Integrate a motion twice, with more digits than any measured method.
 
     Parameters
@@ -89,7 +86,7 @@ def find_reference(problem: MotionProblem, times: Sequence[Fraction], digits: in
     )
 
 
-def _states(problem: MotionProblem, times: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
+def _states(problem: "MotionProblem", times: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
     numbers, states = read_precision(str(digits)), {}
     motion = TaylorEngine(problem, _tolerance(digits), numbers, Stabilization.NONE)
     for time in times:

@@ -4,9 +4,7 @@ Maxima times its own expansions, exact and to a number of digits, without the de
 precision ones are heyoka's.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -22,9 +20,11 @@ from ...number_texts import number, numbers
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request
+from ...schema import NumberText
 from ...series.heyoka_series import expand, expanding_integrator
 from ...series.request import EXACT
 from ...source import Source
+from ...structs import entry
 from .measurement import WORKING_DIGITS, BenchmarkCase, Group, Measurement, Prepared, State, relative_error
 from .operations import acceleration_program, expansion_operations
 
@@ -35,6 +35,23 @@ if TYPE_CHECKING:
 ORDER_OF_RADIUS = 40  # of the expansion that the radius is estimated from
 INSIDE = 0.5  # share of the radius at which the series are added up
 ENTIRE = 1  # unit of time: where they are added up if no radius is known
+
+
+@dataclass(frozen=True)
+class SeriesCost:
+    """An expansion in Maxima, with its time."""
+
+    order: int = entry("Order of the expansion.")
+    seconds: NumberText = entry("Of one expansion, without the derivation of the program.")
+    coordinates: Mapping[str, tuple[NumberText, ...]] = entry("Coefficients of each coordinate, by its name.")
+
+
+@dataclass(frozen=True)
+class SeriesCosts:
+    """Times of expansions of an initial motion in Maxima."""
+
+    scene: str = entry("Name of the scene.")
+    expansions: tuple[SeriesCost, ...] = entry("What each expansion took.")
 
 
 @dataclass(frozen=True)
@@ -100,11 +117,11 @@ def double_series(expansion: Expansion, orders: Sequence[int]) -> Iterator[Bench
 def maxima_series(
     file: Source | Path,
     request: Request,
-    limits: Limits,
+    limits: "Limits",
     expansion: Expansion,
     orders: Sequence[int],
     digits: int | str,
-    reference: Reference,
+    reference: "Reference",
 ) -> Iterator[Measurement]:
     """Yield Maxima's expansions, timed by Maxima.
 
@@ -139,19 +156,19 @@ def maxima_series(
     """
     asked = (request.scene, orders, digits)
     text = ask(Document.SERIES_COSTS, file, *asked, settings=request.settings, limits=limits)
-    for entry in read(Document.SERIES_COSTS, text)["expansions"]:
+    for each in read(Document.SERIES_COSTS, text, SeriesCosts).expansions:
         with mpmath.workdps(WORKING_DIGITS):
-            rows = [numbers(texts) for texts in entry["coordinates"].values()]
+            rows = [numbers(texts) for texts in each.coordinates.values()]
             found = _added_up(rows, _step(expansion))
         yield Measurement(
             group=Group.SERIES,
             method=series_name(digits),
-            setting=translatable("order %(order)s", order=entry["order"]),
+            setting=translatable("order %(order)s", order=each.order),
             time=expansion.time,
             error=relative_error(found, reference.states[expansion.time]),
-            seconds=float(entry["seconds"]),
+            seconds=float(each.seconds),
             preparation_seconds=None,
-            operations=expansion_operations(expansion.problem.motion, entry["order"]),
+            operations=expansion_operations(expansion.problem.motion, each.order),
         )
 
 

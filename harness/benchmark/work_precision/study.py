@@ -1,15 +1,11 @@
 """A work-precision study of one scene: all methods and settings, one reference."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 from ...failures import ErrorKind, HolonomError
-from ...formats import Publication, published
 from ...language import translatable
 from ...program.motion_problem import MotionProblem, motion_problem, require_analytic
 from ...program.precision import read_precision
@@ -19,6 +15,7 @@ from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...simulation.simulate import last_time
 from ...source import Source, source_of
+from ...structs import entry
 from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
 from .engines import (
@@ -30,7 +27,7 @@ from .engines import (
     taylor_name,
     the_two_solves,
 )
-from .measurement import BenchmarkCase, Measurement, Omission
+from .measurement import EXACT_TIME, BenchmarkCase, Measurement, Omission
 from .reference import MORE_DIGITS, Reference, find_reference
 from .runner import measure, without_caches
 from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
@@ -78,15 +75,17 @@ SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits,
 class Study:
     """The results of a work-precision study of one scene."""
 
-    scene: str
-    title: str
-    until: Fraction  # end of the motion
-    machine: Machine
-    reference: Reference
-    measurements: tuple[Measurement, ...]
-    omissions: tuple[Omission, ...]
-    advice: tuple[Advice, ...]
-    prices: tuple[Price, ...]
+    scene: str = entry("Name of the scene.")
+    title: str = entry("Title of the scene.")
+    until: Fraction = entry("Last time of the motion.", pattern=EXACT_TIME)
+    machine: Machine = entry("What it was measured on.")
+    reference: Reference = entry(
+        "Two runs: digits computed with, orders of expansion, and the largest relative difference."
+    )
+    measurements: tuple[Measurement, ...] = entry("Each method at each tolerance: its error and its time.")
+    omissions: tuple[Omission, ...] = entry("What was not measured, and why.")
+    advice: tuple[Advice, ...] = entry("The cheapest method for each number of digits.")
+    prices: tuple[Price, ...] = entry("By what factor the time grows with one more digit.")
 
 
 def study(
@@ -231,42 +230,3 @@ def _cases(
     yield from solver_ladder(problem, until, plan.solver_tolerances)
     yield from stabilizations(problem, until, plan.compared_tolerance)
     yield from the_two_solves(problems, until, plan.compared_tolerance)
-
-
-def study_document(done: Study) -> dict[str, Any]:
-    """Return the document of `holonom accuracy --json`, by `schemas/accuracy.json`.
-
-    Parameters
-    ----------
-    done : Study
-
-    Returns
-    -------
-    dict of str to object
-        Content with format and version.
-    """
-    reference = done.reference
-    content = {
-        "scene": done.scene,
-        "title": done.title,
-        "until": str(done.until),
-        "machine": asdict(done.machine),
-        "reference": {
-            "digits": reference.digits,
-            "order": reference.order,
-            "confirming_digits": reference.confirming_digits,
-            "confirming_order": reference.confirming_order,
-            "difference": reference.difference,
-        },
-        "measurements": [asdict(m) | {"time": str(m.time)} for m in done.measurements],
-        "omissions": [asdict(omission) for omission in done.omissions],
-        "advice": [_published_advice(advice) for advice in done.advice],
-        "prices": [asdict(price) for price in done.prices],
-    }
-    return published(Publication.ACCURACY, content)
-
-
-def _published_advice(advice: Advice) -> dict[str, Any]:
-    m = advice.cheapest
-    found = None if m is None else {"method": m.method, "setting": m.setting, "seconds": m.seconds, "error": m.error}
-    return {"digits": advice.digits, "cheapest": found}

@@ -55,7 +55,7 @@ def write_model(model: Model, name: str) -> dict[str, str]:
         The name cannot name a C function.
     """
     require_identifier(name)
-    written = {"name": name, "NAME": name.upper(), "title": comment_text(f"{model.system}: {model.title}")}
+    written = {"name": name, "NAME": name.upper(), "title": comment_text(f"{model.system.title}: {model.title}")}
     return {
         f"{name}.h": filled(
             "library.h",

@@ -98,7 +98,7 @@ def model_description(model: Model, name: str, token: str) -> ElementTree.Elemen
         "fmiModelDescription",
         fmiVersion="3.0",
         modelName=model.title,
-        description=f"{model.system}; {range_of(model.motion)}",
+        description=f"{model.system.title}; {range_of(model.motion)}",
         instantiationToken=token,
         generationTool="Holonom",
         variableNamingConvention="flat",

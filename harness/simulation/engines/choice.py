@@ -10,6 +10,7 @@ Measured on the five motions of `tests/benchmarks/simulation.py`, 18 to 431 oper
 
 from dataclasses import dataclass
 
+from ...structs import entry
 from ..request import EngineName
 from .registry import compared_engines
 
@@ -20,13 +21,14 @@ TRIAL = 64  # steps of the Taylor engine
 class Choice:
     """The choice of an engine, and its reason."""
 
-    engine: EngineName
-    steps: int  # that the Taylor engine has ahead, estimated from its first ones
-    operations: int  # of the accelerations
-    # taylor, runge_kutta: seconds that each is expected to take for the motion, with what has yet to be compiled
-    taylor: float
-    runge_kutta: float
-    refused: str = ""  # why the other could not be compiled, where it would have been quicker
+    engine: EngineName = entry("Engine that was chosen.")
+    steps: int = entry("Estimated number of steps of the Taylor engine.")
+    operations: int = entry("Operations of the motion program.")
+    taylor: float = entry("Expected seconds of the Taylor engine.")
+    runge_kutta: float = entry("Expected seconds of the Runge-Kutta method.")
+    refused: str = entry(
+        "Why the Runge-Kutta engine could not be compiled where it would have been quicker; else empty.", ""
+    )
 
 
 def quicker_engine(steps: int, operations: int, tol: float, dense: bool) -> Choice:

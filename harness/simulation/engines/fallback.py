@@ -9,7 +9,7 @@ as independent again as they were before.
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
@@ -29,11 +29,11 @@ FINE = 1e-13  # tolerance of the robust engine between two segments of a Taylor 
 class EngineSegment(NamedTuple):
     """A part of the motion that one engine integrates."""
 
-    engine: EngineName
-    start: float
-    end: float
-    case: Difficulty | None = None  # why the robust engine continued; None where that is no hard case
-    reason: str = ""  # why it was called, a clause
+    engine: Annotated[EngineName, "Engine that integrated the segment."]
+    start: Annotated[float, "First time of the segment."]
+    end: Annotated[float, "Last time of the segment."]
+    case: Annotated[Difficulty | None, "Hard case for which the robust engine continued; null without one."] = None
+    reason: Annotated[str, "Reason of the choice of the engine, a clause."] = ""
 
 
 class FallbackEngine:

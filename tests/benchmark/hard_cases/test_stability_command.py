@@ -11,9 +11,9 @@ from refusing import message_of
 from holonom.benchmark.hard_cases import register
 from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, holonom_result, reference_result, required
 from holonom.cli import holonom
+from holonom.document_types import schema
 from holonom.explanations import advice
 from holonom.failures import ErrorKind
-from holonom.formats import schema
 from holonom.simulation.hard_cases import Difficulty
 
 

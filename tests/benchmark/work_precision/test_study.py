@@ -22,11 +22,12 @@ from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.runner import measure
 from holonom.benchmark.work_precision.series import double_series, expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
-from holonom.benchmark.work_precision.study import Plan, study, study_document
+from holonom.benchmark.work_precision.study import Plan, study
+from holonom.document_types import schema
 from holonom.failures import ErrorKind
 from holonom.figures.benchmark import study_figure
 from holonom.figures.style import Picture
-from holonom.formats import schema
+from holonom.formats import Publication, published
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
@@ -129,7 +130,7 @@ def test_every_group_is_measured(done):
 
 @pytest.mark.long
 def test_the_document_keeps_to_its_schema(done):
-    document = json.loads(json.dumps(study_document(done)))
+    document = json.loads(json.dumps(published(Publication.ACCURACY, done)))
     jsonschema.Draft202012Validator(schema("accuracy")).validate(document)
     assert len(document["measurements"]) == len(done.measurements)
     assert document["advice"][-1] == {"digits": 30, "cheapest": None}

@@ -1,0 +1,88 @@
+"""The document of ``holonom free --json``, in which formulas are text."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from .crosscheck.report import Verdict
+from .free_motion import MotionVerdict, TrajectoryKind, UniversalVerdict
+from .structs import entry
+
+LawText = Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class LawCheck:
+    """Result of the trial of a law by SymPy."""
+
+    verdict: Verdict = entry("Result of the check.")
+    digits: int | None = entry("Number of digits that agree.")
+    states: int | None = entry("Number of random states.")
+
+
+@dataclass(frozen=True)
+class ConditionText:
+    """An expression that must vanish if every motion is to be free."""
+
+    expression: str = entry("Expression that must vanish.")
+    place: str = entry("Function of the state whose coefficient it is.")
+    effects: tuple[str, ...] = entry("Effects that the coefficient comes from.")
+
+
+@dataclass(frozen=True)
+class UniversalText:
+    """Laws under which every motion is free.
+
+    The lists after them have an item for each law.
+    """
+
+    verdict: UniversalVerdict = entry("all: the laws are all analytic ones; some: others may exist; none: none exists.")
+    laws: tuple[LawText, ...] = entry("By control.")
+    constants: tuple[tuple[str, ...], ...] = entry("Constants of integration of each law.")
+    free: tuple[tuple[str, ...], ...] = entry("Controls that stay free functions of the time.")
+    positive: tuple[tuple[str, ...], ...] = entry("What must be positive where the law holds.")
+    checks: tuple[LawCheck, ...] = entry("What SymPy found when it tried each law.")
+    conditions: tuple[ConditionText, ...] = entry(
+        "What must vanish, as the coefficient of which function of the state, from which terms of the system."
+    )
+    generic: bool = entry("True for generic values of parameters that were left open.")
+    reason: str = entry("Reason of the verdict.")
+
+
+@dataclass(frozen=True)
+class TrajectoryText:
+    """The control under which one motion is free."""
+
+    kind: TrajectoryKind = entry("Form of the result.")
+    law: LawText | None = entry("By control, where it is closed.")
+    series: Mapping[str, str | int] | None = entry(
+        "By control the law as a power series, and under `order` the order to which it is one; null where it is closed."
+    )
+    free: tuple[str, ...] = entry("Controls that stay free functions of the time.")
+    samples: tuple[tuple[float, ...], ...] | None = entry("Times with the values of the controls.")
+    reason: str = entry("Reason of the result.")
+
+
+@dataclass(frozen=True)
+class PrescribedText:
+    """Controls under prescribed reactions."""
+
+    reactions: LawText = entry("Prescribed multipliers.")
+    controls: LawText = entry("Second time derivatives of the controls.")
+
+
+@dataclass(frozen=True)
+class FreeMotionText:
+    """The free motion of a scene.
+
+    Formulas are text, as the command prints them.
+    """
+
+    scene: str = entry("Name of the scene.")
+    condition: tuple[str, ...] | None = entry(
+        "The condition (10): each formula vanishes in free motion; null where it is not written out."
+    )
+    left_out: str | None = entry("Why (10) is not written out; null where it is.")
+    motion: MotionVerdict = entry("Whether the motion of the scene is free, and what shows it.")
+    universal: UniversalText = entry("Laws under which every motion is free.")
+    trajectory: TrajectoryText = entry("The control under which one motion is free.")
+    prescribed: PrescribedText | None = entry("What the controls do under prescribed reactions; null without any.")
