@@ -87,11 +87,12 @@ def hard_cases(
         yield Difficulty.REDUNDANT
     if any(ILL_CONDITIONED < condition(at.under(independent)) < DEPENDENT for at in ends):
         yield Difficulty.NEARLY_DEPENDENT
-    if any(_mass_ratio(at) > UNEQUAL_MASSES for at in ends):
+    sizes = start.matrices.nominal.coordinates
+    if any(_mass_ratio(at, sizes) > UNEQUAL_MASSES for at in ends):
         yield Difficulty.MASS_RATIO
     if any(_largest(at) > UNSQUARED for at in ends):
         yield Difficulty.OVERFLOW
-    if _free(ends, multipliers):
+    if _free(ends, multipliers, sizes):
         yield Difficulty.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield Difficulty.LONG_RUN
@@ -199,22 +200,23 @@ def _free_changes(at: MotionState, factored: DependentConstraints, free: Matrix,
     return free.T @ np.concatenate(changes, axis=1) / (2 * lengths)
 
 
-def _mass_ratio(at: Matrices) -> float:
-    """Return the ratio of the largest to the smallest mass.
+def _mass_ratio(at: Matrices, sizes: Vector) -> float:
+    """Return the ratio of the largest to the smallest mass, in units of nominal sizes.
 
     If the mass matrix is singular, masses of the free directions are taken. Euler parameters near (1, 0, 0, 0) have a
     small entry on the diagonal, but not a small mass.
     """
-    masses = at.mass.diagonal()[at.mass.diagonal() > 0]
-    if masses.size == len(at.mass):
-        scaled = at.mass / np.sqrt(masses[:, None] * masses)
+    mass = at.mass * sizes[:, None] * sizes
+    masses = mass.diagonal()[mass.diagonal() > 0]
+    if masses.size == len(mass):
+        scaled = mass / np.sqrt(masses[:, None] * masses)
         if not np.isfinite(scaled).all() or np.linalg.eigvalsh(scaled)[0] > SINGULAR_MASS:
             return float(masses.max() / masses.min())
     if not at.finite:
         return 1.0
-    left, values, _ = np.linalg.svd(at.jacobian.T)
+    left, values, _ = np.linalg.svd((at.jacobian * sizes).T)
     free = left[:, rank_of(values) if values.size else 0 :]
-    masses = np.linalg.eigvalsh(free.T @ at.mass @ free)
+    masses = np.linalg.eigvalsh(free.T @ mass @ free)
     masses = masses[masses > ROUNDED_MASS * masses.max(initial=0.0)]
     return float(masses.max() / masses.min()) if masses.size else 1.0
 
@@ -223,8 +225,11 @@ def _largest(at: Matrices) -> float:
     return max(float(np.abs(part).max(initial=0.0)) for part in (at.mass, at.force, at.jacobian, at.curvature))
 
 
-def _free(ends: Sequence[Matrices], multipliers: Vector) -> bool:
-    """Return True if the constraint forces are negligible, although other forces act."""
-    forces = max(float(np.abs(at.force).max(initial=0.0)) for at in ends)
-    reaction = max(float((np.abs(at.jacobian.T) @ multipliers).max(initial=0.0)) for at in ends)
+def _free(ends: Sequence[Matrices], multipliers: Vector, sizes: Vector) -> bool:
+    """Return True if the work of constraint forces is negligible, although other forces act.
+
+    It is that along the nominal sizes. Gradients that grow are not multiplied with the rounding errors of before.
+    """
+    forces = max(float((np.abs(at.force) * sizes).max(initial=0.0)) for at in ends)
+    reaction = min(float((np.abs(at.jacobian * sizes).T @ multipliers).max(initial=0.0)) for at in ends)
     return 0 < forces < np.inf and len(multipliers) > 0 and reaction <= FREE * forces

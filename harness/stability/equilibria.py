@@ -57,6 +57,7 @@ PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the plac
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
 TURN = 2 * np.pi
 PROBES = 5  # random states at which whole turns of a coordinate are tried
+UNTURNED = 1e-9  # relative change of an equation by such turns that is none
 
 
 class Stability(StrEnum):
@@ -271,9 +272,15 @@ class _Search:
 
         def same(q: Vector, turned: Vector) -> bool:
             one, other = (self._at(state, forces) for state in (q, turned))
-            return all(np.allclose(one[name], other[name], rtol=1e-9, atol=1e-9) for name in ("equation", "constraint"))
+            return all(
+                np.all(
+                    np.abs(one[name] - other[name])
+                    <= UNTURNED * np.abs(one[name]) + ROUNDING * np.abs(other[f"{name}_by_q"]) @ np.abs(turned)
+                )
+                for name in ("equation", "constraint")
+            )
 
-        steps = TURN * np.eye(self._n)
+        steps = np.diag(TURN * np.ceil(np.maximum(1.0, self._sizes / TURN)))
         return [place for place, step in enumerate(steps) if all(same(q, q + step) for q in states)]
 
     def starts(self, count: int, random: np.random.Generator, near: Iterable[Equilibrium]) -> Matrix:
@@ -362,7 +369,8 @@ class _Search:
         if shrunk or tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
             return None
         changes = here["equation_by_q"]
-        bound = np.linalg.norm(changes, 2) * np.linalg.norm(tangent.basis, 2) ** 2 if tangent.basis.size else 0.0
+        terms = np.abs(tangent.basis).T @ np.abs(changes) @ np.abs(tangent.basis)
+        bound = np.linalg.norm(terms, 2) if terms.size else 0.0
         stiffness = tangent.basis.T @ changes @ tangent.basis
         return stiffness, float(bound), self._error(q, multipliers, tangent.basis, stiffness)
 

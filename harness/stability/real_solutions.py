@@ -37,7 +37,7 @@ from .linear_equations import LinearEquations
 UNKNOWNS = 10  # larger systems are not tried
 SOLUTIONS = 64  # larger products of the degrees, Bezout's bound of the number of complex solutions, are not tried
 EXACT = 16  # with more complex solutions, values stay numeric
-NEAR = 1e-9  # distance of a numeric value from the exact one
+NEAR = 1e-9  # relative distance of a numeric value from the exact one
 UNDEFINED = object()  # the value of an expression that is not a polynomial
 ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
 
@@ -96,9 +96,15 @@ class RealSolutions:
 
 
 def _nearest(roots: Sequence[sympy.Expr], value: float) -> sympy.Expr | None:
-    """Return the only root that is near a value, or None."""
-    near = [root for root in roots if abs(float(root.evalf()) - value) <= NEAR * max(1.0, abs(value))]
-    return near[0] if len(near) == 1 else None
+    """Return the root that is near a value, and farther from the other roots, or None."""
+    numbers = [float(root.evalf()) for root in roots]
+    if not numbers:
+        return None
+    nearest = min(range(len(numbers)), key=lambda place: abs(numbers[place] - value))
+    found = numbers[nearest]
+    gap = min((abs(other - found) for other in numbers[:nearest] + numbers[nearest + 1 :]), default=math.inf)
+    apart = abs(found - value)
+    return roots[nearest] if apart <= NEAR * max(abs(found), gap) and apart < gap / 4 else None
 
 
 def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
@@ -106,7 +112,8 @@ def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
     radicals = sympy.roots(polynomial, cubics=False, quartics=False, quintics=False, multiple=True)
     if len(radicals) < polynomial.degree():
         return polynomial.real_roots()
-    return [root for root in radicals if abs(sympy.im(root.evalf(30))) < NEAR]
+    numbers = [root.evalf(30) for root in radicals]
+    return [root for root, number in zip(radicals, numbers, strict=True) if abs(sympy.im(number)) <= NEAR * abs(number)]
 
 
 def solve_exactly(

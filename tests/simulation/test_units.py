@@ -31,6 +31,7 @@ from holonom.sandbox import Limits
 from holonom.series.heyoka_series import expand
 from holonom.series.power_series import MotionSeries
 from holonom.simulation.hard_cases import Difficulty
+from holonom.simulation.matrices import MotionMatrices, start_of
 from holonom.simulation.nominal import nominal_of
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -88,6 +89,7 @@ class Seen:
 
     told: tuple  # all that has to be the same
     samples: dict[str, np.ndarray]  # by kind
+    reaction: float = 0.0  # nominal size of the multipliers
 
 
 def seen(motion: MotionProblem, engine: EngineName, units: Units) -> Seen:
@@ -111,13 +113,21 @@ def seen(motion: MotionProblem, engine: EngineName, units: Units) -> Seen:
         [violation.quantity for violation in report.violations],
         cases,
     )
-    return Seen(told, samples)
+    return Seen(told, samples, reaction_size(motion) / float(units.energy))
+
+
+def reaction_size(motion: MotionProblem) -> float:
+    """The largest multiplier whose work along the nominal sizes is that of the forces at the start."""
+    matrices = MotionMatrices(motion)
+    here, sizes = matrices(*start_of(motion)), matrices.nominal.coordinates
+    ways = np.max(np.abs(here.jacobian) * sizes, axis=1)
+    return float(np.max(np.abs(here.force) * sizes) / ways.min()) if len(ways) and ways.min() > 0 else 0.0
 
 
 def assert_same(one: Seen, other: Seen, agreement: float = AGREEMENT) -> None:
     assert other.told == one.told
     for kind, numbers in one.samples.items():
-        size = np.max(np.abs(numbers), initial=0.0) or 1.0
+        size = np.max(np.abs(numbers), initial=one.reaction if kind == "multipliers" else 0.0) or 1.0
         assert np.max(np.abs(other.samples[kind] - numbers), initial=0.0) <= agreement * size, kind
 
 

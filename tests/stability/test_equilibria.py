@@ -351,3 +351,38 @@ def test_constraints_that_follow_only_near_the_initial_state_hold_in_equilibria(
     found = holonom.system(PLANE.format(potential, constraints, start, "")).equilibria(starts=60)
     assert [(each.coordinates["x"], each.coordinates["y"]) for each in found] == [pytest.approx(place or (0, 1))]
     assert found.count == (1 if place else None)
+
+
+CART = """m_ : {mass}$ l_ : {length}$ t_ : {time}$
+system : holonomic_system(coordinates = [x, phi], parameters = [m, g, l, k],
+  kinetic_energy = m*dot(x)^2 + m*(dot(x)^2 + 2*l*cos(phi)*dot(x)*dot(phi) + l^2*dot(phi)^2)/2,
+  potential_energy = [gravity = -m*g*l*cos(phi), spring = k*x^2*(x - l)^2/l^2])$
+s : holonomic_scene(system, parameter_values = [m = m_, g = 10*l_/t_^2, l = l_, k = 3*m_/t_^2], """ + START.format(
+    start="x = l_/5, phi = 1, dot(x) = 0, dot(phi) = 0"
+)
+
+
+def cart(mass: str, length: str, time: str) -> holonom.Scene:
+    return holonom.system(CART.format(mass=mass, length=length, time=time))
+
+
+@pytest.mark.parametrize(
+    "units", [("1/10^27", "1/10^10", "1/10^13"), ("10^30", "10^9", "10^7"), ("10^30", "10^13", "10^7")]
+)
+def test_a_length_beside_an_angle_may_have_any_unit(units):
+    """In units of atoms or planets one of six was found, as not isolated; a length of 10^13 had whole turns."""
+    one, other = (cart(*each).equilibria() for each in (("1", "1", "1"), units))
+    assert other.turns == one.turns == ("phi",)
+    assert len(other) == len(one) == 6
+    assert (other.count, other.complete) == (one.count, one.complete) == (6, True)
+    for here, there in zip(one, other, strict=True):
+        assert there.stability is here.stability
+        assert there.exact.keys() == here.exact.keys() == {"x", "phi"}
+        assert there.exact["x"] == here.exact["x"] * sp.sympify(units[1].replace("^", "**"))
+        assert there.exact["phi"] == here.exact["phi"]
+
+
+def test_exact_values_are_real_in_any_unit():
+    """Roots i/10^10 counted as real, and none was given."""
+    (found,) = of_particle("potential_energy = x^4/4 + x^2/10^20/2", "x").equilibria()
+    assert found.exact == {"x": 0}
