@@ -2,6 +2,7 @@
 
 import json
 import re
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -591,3 +592,30 @@ def test_servo_constraints_in_quadruple_precision_give_the_torques_of_inverse_dy
     found = [[float(number) for number in motion[name]] for name in ("a", "b", "tau1", "tau2")]
     assert np.array(found) == pytest.approx(truth, rel=1e-13, abs=1e-13)
     assert motion.report.trusted
+
+
+CRANE_IN_UNITS = """m_ : {mass}$ l_ : {length}$ t_ : {time}$
+system : holonomic_system(coordinates = [x, l, phi], controls = [F, W], parameters = [M, m, g],
+  kinetic_energy = M*dot(x)^2/2 + m*((dot(x) + dot(l)*sin(phi) + l*cos(phi)*dot(phi))^2
+    + (dot(l)*cos(phi) - l*sin(phi)*dot(phi))^2)/2,
+  potential_energy = [gravity = -m*g*l*cos(phi)], forces = [drives = [F, W, 0]])$
+s : holonomic_scene(system, parameter_values = [M = 3*m_, m = m_, g = 10*l_/t_^2],
+  servo_constraints = [x + l*sin(phi) = l_*sin(t/t_)/5, l*cos(phi) = l_*(2 + t^2/t_^2/50)], initial_state = [],
+  initial_guess = [x = 0, l = 2*l_, phi = 0, dot(x) = 0, dot(l) = 0, dot(phi) = 0], time_span = [0, 2*t_])$
+"""
+
+
+@pytest.mark.parametrize(
+    "units", [(Fraction(1, 10**27), Fraction(1, 10**10), Fraction(1, 10**13)), (10**30, 10**9, 10**7)]
+)
+def test_forces_of_a_crane_are_the_same_in_other_units(units):
+    """F does not move the load where the rope hangs straight, at the start: its weight in the least squares was one."""
+
+    def moved(mass, length, time):
+        motion = holonom.system(CRANE_IN_UNITS.format(mass=mass, length=length, time=time)).simulate(samples=5)
+        assert motion.report.trusted
+        assert [segment.engine for segment in motion.report.segments] == ["taylor"]
+        force = float(mass * length / Fraction(time) ** 2)
+        return np.array([motion["F"] / force, motion["W"] / force, motion["x"] / float(length), motion["phi"]])
+
+    assert moved(*units) == pytest.approx(moved(1, 1, 1), rel=1e-10, abs=1e-10)

@@ -27,6 +27,7 @@ from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
 from ..matrices import MotionMatrices
+from ..nominal import share_of
 from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
 from .engine import Obstruction, Solutions, Step, require_reach
@@ -332,12 +333,12 @@ class ProgramEngine:
     def _pivots_lose(self, t: Any, state: Numbers) -> float:
         """Return the relative error of the program's accelerations.
 
-        The reference is a solve that chooses its pivots.
+        The reference is a solve that chooses its pivots. Accelerations below their nominal sizes may have cancelled.
         """
         at = self._matrices.independent(float(t), as_floats(state))
         chosen = factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
         fixed = as_floats(self.solutions(np.array([t]), np.reshape(state, (-1, 1))).accelerations[:, 0])
-        error = np.max(np.abs(fixed - chosen), initial=0.0) / np.max(np.abs(chosen), initial=1e-300)
+        error = share_of(fixed - chosen, chosen, self._matrices.nominal.accelerations)
         return float(error) if np.isfinite(error) else np.inf
 
     @property
