@@ -59,6 +59,7 @@ BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
 FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is computed
 COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives is estimated
 CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
+ROUNDING = 1e-12  # of the terms of an equation
 RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same
 VANISHING = 1e-9  # multipliers relative to the terms that they are the sum of
 MATRICES = lists_of(MATRIX)
@@ -103,7 +104,7 @@ class FreeDeviations:
     sizes : ndarray, shape (k,)
         The longest vector of multipliers of all initial deviations of length one, at each time.
     basis : ndarray, shape (2m, staying)
-        Of the initial deviations that stay free.
+        Of the initial deviations that stay free, orthonormal.
     stability : Stability or None
         Of the multipliers, if the motion is periodic. None otherwise.
     """
@@ -346,8 +347,22 @@ class _Nodes:
     @cached_property
     def error(self) -> float:
         """Relative difference of Phi at the end if every second node is left out."""
-        coarse = self._transition(2)[-1]
-        return float(np.linalg.norm(coarse - self.transition[-1]) / or_one(np.linalg.norm(self.transition[-1])))
+        return self._apart(self._transition(2)[-1])
+
+    @cached_property
+    def lengths(self) -> Vector:
+        """Factors to the state in the basis, shape (2m,): velocities are in the nominal unit of time."""
+        return np.repeat([1.0, float(nominal_of(self._problem).time)], self.transition.shape[1] // 2)
+
+    @property
+    def balanced(self) -> Matrix:
+        """Phi of the state in these lengths, shape (k, 2m, 2m)."""
+        return self.lengths[:, None] * self.transition / self.lengths
+
+    def _apart(self, coarse: Matrix) -> float:
+        """Return the relative distance of Phi at the end from another one."""
+        here, there = self.balanced[-1], self.lengths[:, None] * coarse / self.lengths
+        return float(np.linalg.norm(there - here) / or_one(np.linalg.norm(here)))
 
     def _transition(self, stride: int) -> Matrix:
         rates = np.array([each.A for each in self.linear[::stride]])
@@ -361,13 +376,30 @@ class _Nodes:
             np.abs(last.state - first.state) > RETURNED * np.concatenate([nominal.coordinates, nominal.velocities])
         ):
             return False
-        return all(self._same_later(node) for node in self.nodes)
+        later = [self._later(node) for node in self.nodes]
+        return all(self._repeat(row, later) for row in ("equation", "constraint", "rate", "acceleration"))
 
-    def _same_later(self, node: _Node) -> bool:
+    def _later(self, node: _Node) -> Mapping[str, Matrix]:
+        """Return the equations at the same state after the motion's duration."""
         t = node.point.t + self.duration
         later = node.point._replace(t=t, controls=self._equations.controls_at(t))
-        there = self._equations.at(later, self._problem.independent)
-        return all(np.allclose(here, there[name], rtol=RETURNED, atol=RETURNED) for name, here in node.here.items())
+        return self._equations.at(later, self._problem.independent)
+
+    def _repeat(self, row: str, later: Sequence[Mapping[str, Matrix]]) -> bool:
+        """Return True if equations and their derivatives by the motion are the same later, at nominal sizes."""
+        nominal = nominal_of(self._problem)
+        sizes = {"q": nominal.coordinates, "v": nominal.velocities, "a": nominal.accelerations}
+        here, there = (
+            np.array([
+                np.column_stack([at[row], *(at[f"{row}_by_{name}"] * size for name, size in sizes.items())])
+                for at in equations
+            ])
+            for equations in ([node.here for node in self.nodes], later)
+        )  # fmt: skip
+        largest = np.max(np.abs(here), axis=0)
+        terms = np.max(largest[:, 1:], axis=1, initial=0.0)
+        largest[:, 0] = terms
+        return bool(np.all(np.abs(here - there) <= RETURNED * largest + ROUNDING * terms[:, None]))
 
 
 class _SwitchedNodes(_Nodes):
@@ -400,8 +432,7 @@ class _SwitchedNodes(_Nodes):
             for t, node in zip(self.times, self.nodes, strict=True)
         ]
         self.transition = self._transitions(motion, stride)
-        coarse = self._transitions(self._derived(request.until, len(self.times), COARSE), 1)[-1]
-        self.error = float(np.linalg.norm(coarse - self.transition[-1]) / or_one(np.linalg.norm(self.transition[-1])))
+        self.error = self._apart(self._transitions(self._derived(request.until, len(self.times), COARSE), 1)[-1])
 
     def _derived(self, until: Fraction | None, samples: int, tol: float | None) -> Simulation:
         alone = replace(self._problem, observe=("trajectory",), outputs=None, controls=None)
@@ -451,7 +482,9 @@ def _propagated(rates: Matrix, duration: float, start: Matrix, nodes: int = NODE
     for first in range(0, blocks * nodes, nodes):
         block = np.einsum("jk,kab->jakb", weights, rates[first : first + nodes + 1])
         matrix = np.eye(nodes * size) - block[:, :, 1:].reshape(nodes * size, nodes * size)
-        right = np.tile(solution[first], (nodes, 1)) + (block[:, :, 0] @ solution[first]).reshape(nodes * size, -1)
+        right = np.tile(solution[first], (nodes, 1)) + (block[:, :, 0] @ solution[first]).reshape(
+            nodes * size, start.shape[1]
+        )
         solution[first + 1 : first + nodes + 1] = np.linalg.solve(matrix, right).reshape(nodes, *start.shape)
     return solution
 
@@ -498,20 +531,28 @@ def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown:
     parts = [node.reaction_deviations(linear) for node, linear in zip(nodes.nodes, nodes.linear, strict=True)]
     rows = [np.where(np.abs(C) > VANISHING * terms, C, 0.0) for C, terms in parts]
     responses = np.array([C @ phi for C, phi in zip(rows, nodes.transition, strict=True)])
-    scales = or_one(
-        np.array(
-            [
-                np.linalg.norm(terms) * np.linalg.norm(phi)
-                for (_, terms), phi in zip(parts, nodes.transition, strict=True)
-            ]
-        )
-    )
-    stacked = (responses / scales[:, None, None]).reshape(-1, responses.shape[-1])
+    lengths = nodes.lengths
+    grown = np.linalg.norm(nodes.balanced, axis=(1, 2))[:, None]
+    scales = or_one(grown * np.array([np.linalg.norm(terms / lengths, axis=1) for _, terms in parts]))
+    stacked = (responses / lengths / scales[:, :, None]).reshape(-1, len(lengths))
     _, values, right = np.linalg.svd(stacked, full_matrices=True)
     rank = int(np.count_nonzero(values > VANISHING * np.sqrt(len(stacked))))
     stability = None
     if floquet is not None:
         moving = right[:rank]
-        stability = _stability_of(moving @ _monodromy(nodes) @ moving.T) if rank else Stability.STABLE
+        monodromy = lengths[:, None] * _monodromy(nodes) / lengths
+        stability = _stability_of(moving @ monodromy @ moving.T) if rank else Stability.STABLE
     sizes = np.array([np.linalg.norm(each, 2) for each in responses[shown]])
-    return FreeDeviations(right.shape[0] - rank, sizes, right[rank:].T, stability)
+    return FreeDeviations(right.shape[0] - rank, sizes, _orthonormal(right[rank:].T, lengths), stability)
+
+
+def _orthonormal(basis: Matrix, lengths: Vector) -> Matrix:
+    """Return an orthonormal basis of vectors that are given in these lengths, shape (2m, s).
+
+    Those without velocities come apart first: the unit of time may be so small or large that they would be lost.
+    """
+    if not basis.size:
+        return basis
+    _, _, turned = np.linalg.svd(basis[len(basis) // 2 :])
+    graded = basis @ turned.T
+    return np.linalg.qr((graded if lengths[-1] < 1 else graded[:, ::-1]) / lengths[:, None])[0]

@@ -286,3 +286,53 @@ def test_deviations_jump_with_an_impulse():
         rate = [slope, 1 + slope] if t > 1 else [0, 1]
         expected = [[1 + slope * since, until + (1 + slope) * since], rate]
         assert phi == pytest.approx(np.array(expected), abs=1e-9)
+
+
+# ---- units ----------------------------------------------------------------------------------------------------------
+
+SMALL = """m_ : {mass}$ l_ : {length}$ t_ : {time}$
+"""
+HEAVIER_SPRING = """system : holonomic_system(coordinates = [x], parameters = [k, c], kinetic_energy = m_*dot(x)^2/2,
+  potential_energy = k*x^2*(1 + {growth}*t/t_)/2, forces = [-c*dot(x)])$
+s : holonomic_scene(system, parameter_values = [k = m_/t_^2, c = m_/t_/10], initial_state = [x = 0, dot(x) = 0],
+  time_span = [0, t_])$
+"""
+PAPER = """system : holonomic_system(coordinates = [q1, q2, q3], controls = [u], parameters = [k, c],
+  kinetic_energy = m_*(dot(q1)^2 + dot(q2)^2 + dot(q3)^2)/2,
+  forces = [spring = [-k*(q1 + q2), 0, 0], damping = [0, -c*(dot(q1) + dot(q2)), 0]], constraints = [q3 - u*(q1 + q2)])$
+s : holonomic_scene(system, control_law = [u = (1 + t/t_)/3], parameter_values = [k = m_/t_^2, c = 2*m_/t_],
+  initial_state = [q1 = l_, q2 = -l_, dot(q1) = l_/t_, dot(q2) = -l_/t_], time_span = [0, t_])$
+"""
+ONE = {"mass": "1", "length": "1", "time": "1"}
+ATOMS = {"mass": "1/10^27", "length": "1/10^10", "time": "1/10^13"}
+PLANETS = {"mass": "10^30", "length": "10^9", "time": "10^7"}
+
+
+@pytest.mark.parametrize("units", [ONE, {**ONE, "mass": "1/10^27"}, ATOMS])
+@pytest.mark.parametrize("growth", [0, 1])
+def test_equations_of_small_forces_that_grow_do_not_repeat(units, growth):
+    """A spring of 1e-27 N/m that grew was the same later, so that the growing motion had Floquet multipliers."""
+    scene = holonom.system(SMALL.format(**units) + HEAVIER_SPRING.format(growth=growth))
+    found = scene.linearize_along(samples=2).floquet
+    assert (found is None) is (growth == 1)
+
+
+@pytest.mark.parametrize("units", [ONE, ATOMS, PLANETS])
+def test_deviations_that_stay_free_are_counted_in_any_unit(units):
+    """S = q1 + q2 = 0 is free. Its deviations S and dot(S) are not; q1 - q2 and its rate may deviate."""
+    along = holonom.system(SMALL.format(**units) + PAPER).linearize_along(samples=2)
+    assert along.free.staying == 2
+    assert along.free.basis.T @ along.free.basis == pytest.approx(np.eye(2), abs=1e-14)
+    time = along.at[0].point["q1"] / along.at[0].point["dot(q1)"]
+    columns = along.free.basis / np.linalg.norm(along.free.basis * np.repeat([1, time], 2)[:, None], axis=0)
+    for rows, unit in ((along.at[0].C[:2], 1), (along.at[0].C[3:5], time)):
+        changes = unit * rows @ columns  # of q1 and q2, and of their rates
+        assert changes.sum(axis=0) == pytest.approx(0, abs=1e-7 * np.abs(along.at[0].C[:2]).max())
+
+
+def test_a_motion_that_servo_constraints_fix_has_no_deviations():
+    """It ended as an internal error."""
+    system = "system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2, forces = [F])$"
+    given = "servo_constraints = [x - sin(t)], initial_state = [], time_span = [0, 1]"
+    scene = holonom.system(f"{system} s : holonomic_scene(system, {given})$")
+    assert scene.linearize_along(samples=3).transition.shape == (3, 0, 0)
