@@ -226,9 +226,9 @@ def _largest(at: Matrices) -> float:
 
 
 def _free(ends: Sequence[Matrices], multipliers: Vector, sizes: Vector) -> bool:
-    """Return True if the work of constraint forces is negligible, although other forces act.
+    """Return True if the constraint forces are negligible, although others act.
 
-    It is that along the nominal sizes. Gradients that grow are not multiplied with the rounding errors of before.
+    Their work along the nominal sizes is compared. Gradients that grow do not multiply earlier rounding errors.
     """
     forces = max(float((np.abs(at.force) * sizes).max(initial=0.0)) for at in ends)
     reaction = min(float((np.abs(at.jacobian * sizes).T @ multipliers).max(initial=0.0)) for at in ends)

@@ -351,7 +351,10 @@ class _Nodes:
 
     @cached_property
     def lengths(self) -> Vector:
-        """Factors to the state in the basis, shape (2m,): velocities are in the nominal unit of time."""
+        """Factors to the state in the basis, shape (2m,).
+
+        With them, velocities are in the nominal unit of time.
+        """
         return np.repeat([1.0, float(nominal_of(self._problem).time)], self.transition.shape[1] // 2)
 
     @property
@@ -386,7 +389,10 @@ class _Nodes:
         return self._equations.at(later, self._problem.independent)
 
     def _repeat(self, row: str, later: Sequence[Mapping[str, Matrix]]) -> bool:
-        """Return True if equations and their derivatives by the motion are the same later, at nominal sizes."""
+        """Return True if equations and their derivatives by the motion repeat.
+
+        They are compared at nominal sizes.
+        """
         nominal = nominal_of(self._problem)
         sizes = {"q": nominal.coordinates, "v": nominal.velocities, "a": nominal.accelerations}
         here, there = (
@@ -547,7 +553,7 @@ def _free(problem: MotionProblem, nodes: _Nodes, floquet: Floquet | None, shown:
 
 
 def _orthonormal(basis: Matrix, lengths: Vector) -> Matrix:
-    """Return an orthonormal basis of vectors that are given in these lengths, shape (2m, s).
+    """Return an orthonormal basis of vectors in these lengths, shape (2m, s).
 
     Those without velocities come apart first: the unit of time may be so small or large that they would be lost.
     """
