@@ -320,6 +320,30 @@ def test_an_internal_error_had_the_status_of_a_disagreement(monkeypatch):
     assert "AttributeError" in found.output
 
 
+@pytest.mark.parametrize(("other", "status"), [(HolonomError(ErrorKind.NO_LAW), 2), (ValueError("other"), 70)])
+def test_errors_together_are_internal_if_one_is(other, status, monkeypatch):
+    def raising():
+        raise ExceptionGroup("several", [HolonomError(ErrorKind.NEVER_AT_REST), other])
+
+    monkeypatch.setattr("holonom.errata.errata", raising)
+    assert CliRunner().invoke(cli, ["errata"], standalone_mode=False).return_value == status
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [
+        (("simulate", "--untl", "3"), ("--untl", "--until")),
+        (("--verbos",), ("--verbos", "--verbose")),
+        (("simulat",), ("simulat", "simulate")),
+        (("series", "--digits", "x"), ("--digits", "'x'", "integer")),
+    ],
+)
+def test_an_error_of_the_command_line_names_what_it_is_about(words, named, monkeypatch, capsys):
+    monkeypatch.setattr("sys.argv", ["holonom", *words])
+    assert run() == 2
+    assert re.search("holonom: error: .*" + ".*".join(map(re.escape, named)), capsys.readouterr().err)
+
+
 def test_a_long_condition_is_printed_by_its_terms_with_its_roots_under_names():
     distance = ["Add", ["Power", "x", 2], ["Power", "y", 2]]
     short = ["Multiply", "x", ["Power", distance, ["Rational", -1, 2]]]

@@ -129,7 +129,7 @@ def check(
 
 
 def _checked(source: "Source", settings: dict[str, str], seed: str, results: Sequence["Content"]) -> "CheckReport":
-    """Check one scene file, its motions beside its equations."""
+    """Check one scene file, its motions with its equations."""
     from ..record import derived_record
     from .beside import beside, result_of
 

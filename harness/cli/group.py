@@ -6,10 +6,9 @@ internal error, 130 when interrupted, 141 if the reader of the output has ended.
 
 import io
 import os
-import re
 import sys
 import warnings
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from contextlib import nullcontext, suppress
 from typing import Any
 
@@ -22,7 +21,6 @@ from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command
 
 MACHINE_AT_FAULT = 3
-INVALID = re.compile(r"^Invalid value for (?:'-\w' / )?'([^']+)'(?: / '[^']+')*: ")  # of Click, before the reason
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
@@ -54,6 +52,8 @@ class Commands(click.Group):
                 return super().invoke(ctx)
         except (HolonomError, ExceptionGroup) as error:
             errors = error.exceptions if isinstance(error, ExceptionGroup) else (error,)
+            if not all(isinstance(each, HolonomError) for each in errors):
+                return _internal_error(error, verbose)
             standing_in = str(ctx.meta.get(STANDARD_INPUT, ""))
             return max(_rejected(each, verbose, self._options(ctx), standing_in) for each in errors)
         except BrokenPipeError:
@@ -97,13 +97,11 @@ class Commands(click.Group):
         """
         try:
             return super().resolve_command(ctx, args)
-        except click.UsageError as error:
+        except click.UsageError:
             from difflib import get_close_matches
 
             near = get_close_matches(args[0], self.list_commands(ctx))
-            if near and "Did you mean" not in error.message:  # newer versions of Click print it themselves
-                error.message += f" Did you mean {' or '.join(near)}?"
-            raise
+            raise click.UsageError(f"No such command '{args[0]}'.{_meant(near)}", ctx) from None
 
     def _options(self, ctx: click.Context) -> set[str]:
         """Options of the command that runs."""
@@ -172,8 +170,7 @@ def run() -> int:
             sys.stdout.flush()
         return status
     except click.ClickException as error:
-        message = INVALID.sub(r"\1: ", error.format_message()).replace("integer range", "integer")
-        message = re.sub(r"(?<![.?]) Did you mean", ". Did you mean", message)
+        message = _message_of(error)
         return _report(message if message.endswith(("?", ".")) else f"{message}.", error.exit_code)
     except (click.Abort, KeyboardInterrupt):
         return INTERRUPTED
@@ -181,6 +178,21 @@ def run() -> int:
         return PIPE_CLOSED
     except OSError as error:
         return _system_error(error)
+
+
+def _message_of(error: click.ClickException) -> str:
+    """Return a message that begins with the option or argument that it is about."""
+    match error:
+        case click.NoSuchOption():
+            return f"{error.message}.{_meant(sorted(error.possibilities or ()))}"
+        case click.BadParameter(param=click.Parameter() as parameter) if not isinstance(error, click.MissingParameter):
+            spelt = [each for each in parameter.opts if each.startswith("--")]
+            return f"{spelt[0] if spelt else parameter.human_readable_name}: {error.message}"
+    return error.format_message()
+
+
+def _meant(names: Sequence[str]) -> str:
+    return f" Did you mean {' or '.join(names)}?" if names else ""
 
 
 def _show_warning(message: Warning | str, category: type[Warning], filename: str, lineno: int, *more: Any) -> None:

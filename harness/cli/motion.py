@@ -2,11 +2,11 @@
 
 import sys
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,8 +18,12 @@ from ..series.request import AUTOMATIC, EXACT, SeriesRequest
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from .background import run_in_background
 from .group import OWN_PROCESS, holonom
-from .options import as_time, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
+from .options import IntegerRange, as_time, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile
+
+if TYPE_CHECKING:
+    from ..program.motion_problem import MotionProblem
+    from ..simulation.result import Report, Simulation
 
 
 @holonom.command(
@@ -32,7 +36,7 @@ from .outputs import STANDARD_OUTPUT, OutputFile
 @asks_one_scene()
 @takes(*options_of(SeriesRequest, "order", "precision", "until", "sensitivities"))
 @click.option("--exact", is_flag=True, help="Use rational coefficients only. Default: exact if possible.")
-@click.option("--digits", metavar="D", type=click.IntRange(min=1), help="Significant digits of the coefficients.")
+@click.option("--digits", metavar="D", type=IntegerRange(min=1), help="Significant digits of the coefficients.")
 @click.option("--at", metavar="T", callback=as_time, help="Also evaluate the series at time T.")
 @writes_json
 @runs_scenes
@@ -115,11 +119,58 @@ def simulate(
     1/32768 of the time span. The exit status is 1 if errors of the constraints, the energy or forces are too large for
     the tolerance.
     """
+    if curves is not None and plot_file is None:
+        raise click.UsageError("--curves chooses those of --plot")
+    files = _Files(json_file, final, output, plot_file, None if curves is None else _names_of(curves), film_file)
+    wanted = SimulationRequest(**options)
+    problem = _derived(scene_file, request, wanted, equilibrium, limits)
+    from ..simulation.output import require_formats
+
+    require_formats(output, plot_file, film_file)
+    report, simulation = _integrated(problem, files.sampled(wanted), files, limits)
+    _present(problem, report, simulation, files)
+    return 0 if report.trusted else FAILED
+
+
+@dataclass(frozen=True)
+class _Files:
+    """The files that a motion is written to."""
+
+    json: Path | None
+    final: bool  # the JSON document is of the final state alone
+    samples: Path | None
+    plot: Path | None
+    curves: list[str] | None  # of the plot; None for all
+    film: Path | None
+
+    @property
+    def drawn(self) -> bool:
+        """True if there is a picture of the motion."""
+        return self.plot is not None or self.film is not None
+
+    @property
+    def streamed(self) -> bool:
+        """True if samples are written as they are computed, and not stored."""
+        from ..simulation.output import streams
+
+        alone = not self.drawn and (self.json is None or self.final)
+        return alone and self.samples is not None and streams(self.samples)
+
+    def sampled(self, wanted: SimulationRequest) -> SimulationRequest:
+        """Return the request with as many samples as the files need."""
+        if self.final and self.samples is None and not self.drawn:
+            return replace(wanted, samples=FINAL_STATE_ALONE)
+        return replace(wanted, samples=SAMPLES_OF_A_PLOT) if wanted.samples is None and self.drawn else wanted
+
+
+def _derived(
+    scene_file: Path, request: Request, wanted: SimulationRequest, equilibrium: str | None, limits: Limits
+) -> "MotionProblem":
+    """Derive the motion. Modules that integrate it are imported at the same time."""
     from ..program.motion_problem import motion_problem, problem_document, read_problem
     from ..simulation.derivations import open_names, stands
     from ..source import Source
 
-    wanted = SimulationRequest(**options)
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
     if equilibrium is not None:
         from ..scene import Scene
@@ -131,45 +182,42 @@ def simulate(
     with run_in_background(scene_file, limits, imports):
         document = problem_document(source, request, limits, digits, open_names(request, digits, wanted.sensitivities))
     problem = read_problem(document, source.description(request.settings))
-    if not stands(problem):
-        problem = motion_problem(source, request, limits, digits)
-    from ..display.motion import HINT_OF_ROOT, rejection, show_report
-    from ..display.progress import motion_progress
-    from ..simulation.accuracy_check import has_root_of
-    from ..simulation.output import (
-        report_document,
-        require_disk,
-        require_formats,
-        require_memory,
-        sample_file,
-        simulation_document,
-        streams,
-        write_files,
-    )
-    from ..simulation.simulate import integrate
-    from ..simulation.simulate import simulate as follow_and_keep
+    return problem if stands(problem) else motion_problem(source, request, limits, digits)
 
-    if curves is not None and plot_file is None:
-        raise click.UsageError("--curves chooses those of --plot")
-    require_formats(output, plot_file, film_file)
-    drawn = plot_file is not None or film_file is not None
-    if final and output is None and not drawn:
-        wanted = replace(wanted, samples=FINAL_STATE_ALONE)
-    elif wanted.samples is None and drawn:
-        wanted = replace(wanted, samples=SAMPLES_OF_A_PLOT)
-    if output is not None and streams(output) and not drawn and (json_file is None or final):
-        require_disk(problem, wanted.samples or 0, output)
-        with motion_progress(problem.title) as progress, sample_file(output, digits) as take:
-            report = integrate(problem, wanted, take, progress)
-    else:
-        require_memory(problem, wanted.samples or 0, limits.memory_mib)
-        with motion_progress(problem.title) as progress:
-            simulation = follow_and_keep(problem, wanted, progress)
-        write_files(simulation, output, plot_file, None if curves is None else _names_of(curves), film_file)
-        report = simulation.report
-    if json_file is not None:
-        publish(json_text(report_document(report) if final else simulation_document(simulation)), json_file)
-    if json_file != STANDARD_OUTPUT:
+
+def _integrated(
+    problem: "MotionProblem", wanted: SimulationRequest, files: _Files, limits: Limits
+) -> "tuple[Report, Simulation | None]":
+    """Integrate the motion and write its files. Streamed samples are not returned."""
+    from ..display.progress import motion_progress
+    from ..simulation.output import require_disk, require_memory, sample_file, write_files
+    from ..simulation.simulate import integrate
+    from ..simulation.simulate import simulate as integrate_and_store
+
+    if files.streamed:
+        require_disk(problem, wanted.samples or 0, files.samples)
+        with (
+            motion_progress(problem.title) as progress,
+            sample_file(files.samples, _digits_of(wanted.precision)) as take,
+        ):
+            return integrate(problem, wanted, take, progress), None
+    require_memory(problem, wanted.samples or 0, limits.memory_mib)
+    with motion_progress(problem.title) as progress:
+        simulation = integrate_and_store(problem, wanted, progress)
+    write_files(simulation, files.samples, files.plot, files.curves, files.film)
+    return simulation.report, simulation
+
+
+def _present(problem: "MotionProblem", report: "Report", simulation: "Simulation | None", files: _Files) -> None:
+    """Write the JSON document, the table and the reasons of a failed accuracy check."""
+    from ..display.motion import HINT_OF_ROOT, rejection, show_report
+    from ..simulation.accuracy_check import has_root_of
+    from ..simulation.output import report_document, simulation_document
+
+    if files.json is not None:
+        final = files.final or simulation is None
+        publish(json_text(report_document(report) if final else simulation_document(simulation)), files.json)
+    if files.json != STANDARD_OUTPUT:
         from .console import make_console
 
         show_report(make_console(), problem.scene, problem.title, report)
@@ -177,7 +225,6 @@ def simulate(
         click.echo(rejection(violation), err=True)
     if report.violations and has_root_of(problem.matrices, problem.state[len(problem.coordinates) :]):
         click.echo(HINT_OF_ROOT, err=True)
-    return 0 if report.trusted else FAILED
 
 
 def _names_of(curves: str) -> list[str]:

@@ -24,6 +24,12 @@ LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 
 
+class IntegerRange(click.IntRange):
+    """An integer between bounds, which messages call so."""
+
+    name = "integer"
+
+
 def writes_json(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command the option --json.
 
@@ -71,7 +77,7 @@ def takes_settings(command: Callable[..., int]) -> Callable[..., int]:
     @click.option(
         "--closed-form-size",
         metavar="N",
-        type=click.IntRange(1),
+        type=IntegerRange(1),
         help="Largest closed form, in terms. Default: closed_form_size of the scene file, or 500.",
     )
     @functools.wraps(command)
@@ -132,7 +138,7 @@ def _click_option(each: Field) -> Callable[[Callable[..., int]], Callable[..., i
     elif kind is bool:
         details["is_flag"] = True
     elif kind in (int, float) and not stated.least is stated.most is stated.above is None:
-        bound = click.IntRange if kind is int else click.FloatRange
+        bound = IntegerRange if kind is int else click.FloatRange
         least, is_open = (stated.least, False) if stated.above is None else (stated.above, True)
         details["type"] = bound(least, stated.most, min_open=is_open)
     elif kind in (int, float):
@@ -204,7 +210,7 @@ def runs_scenes(command: Callable[..., int]) -> Callable[..., int]:
     @click.option(
         "--memory-limit",
         metavar="MIB",
-        type=click.IntRange(256, MOST_MEMORY),
+        type=IntegerRange(256, MOST_MEMORY),
         default=defaults.memory_mib,
         show_default=True,
         help="Memory limit of a Maxima run.",

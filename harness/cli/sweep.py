@@ -11,7 +11,7 @@ from ..program.request import Request
 from ..sandbox import Limits
 from ..sweeps.request import SweepRequest
 from .group import holonom
-from .options import asks_one_scene, present, runs_scenes, takes, writes_json
+from .options import IntegerRange, asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile, as_given
 
 FAILED = 1  # exit status of a sweep none of whose rows came about
@@ -33,8 +33,8 @@ FAILED = 1  # exit status of a sweep none of whose rows came about
     multiple=True,
     help="Random values: mean and deviation, or smallest and largest value.",
 )
-@click.option("--size", metavar="N", type=click.IntRange(min=1), help="Size of the sample.")
-@click.option("--seed", metavar="N", type=click.IntRange(min=0), help="Seed of the sample. Default: 0.")
+@click.option("--size", metavar="N", type=IntegerRange(min=1), help="Size of the sample.")
+@click.option("--seed", metavar="N", type=IntegerRange(min=0), help="Seed of the sample. Default: 0.")
 @click.option(
     "--keep",
     metavar="WHAT,...",

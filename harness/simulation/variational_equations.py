@@ -1,4 +1,4 @@
-"""Variational equations of a motion, beside the equations of the motion itself.
+"""Variational equations of a motion, with the equations of the motion itself.
 
 With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
 

@@ -1,6 +1,7 @@
 """Every entry, command, option, field and public name has its place in the reference."""
 
 import io
+import json
 import re
 import shutil
 import subprocess
@@ -64,6 +65,14 @@ def test_options_of_the_command_line_itself_are_explained(objects):
 @pytest.mark.parametrize("name", TYPES)
 def test_every_field_of_a_document_is_described(name):
     assert [path for path, _, text in fields_of(schema(name)) if not text] == []
+
+
+@pytest.mark.long
+def test_the_page_about_documents_links_to_their_schemas(tmp_path):
+    build(tmp_path, "html")
+    links = re.findall(r'href="(\.\./_static/schemas/[^"]*)"', (tmp_path / "reference" / "documents.html").read_text())
+    schemas = [json.loads((tmp_path / "reference" / link).read_text()) for link in links]
+    assert {each["title"] for each in schemas} == {f"holonom-{name}" for name in TYPES}
 
 
 @pytest.mark.parametrize("name", holonom.__all__)
