@@ -75,6 +75,10 @@ def nothing_collected() -> Iterator[None]:
 
     All of them are part of the result, and Python would search them for garbage again and again: half of the time that
     a large program takes to be read.
+
+    Yields
+    ------
+    None
     """
     if not gc.isenabled():
         yield

@@ -11,7 +11,8 @@ After a block of steps the states are projected onto the constraints. `holonom.s
 - that takes too many steps, or steps too long for the quantities that are looked at.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -31,7 +32,7 @@ from .polynomials import rates_of
 from .quantities import along_motion, expressions_of
 
 ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
-ELEMENTS_WITH_CALLBACK = 32  # where Python is called after each step
+TOGETHER = 32  # batches of the same number of steps that are looked at together
 BLOCK = 512  # steps between projections
 MOST_BLOCKS = 64
 ROOM = 64  # steps for which there is room at first
@@ -57,6 +58,18 @@ class BatchResult(NamedTuple):
     exchanged: Floats
 
 
+class _Recorded(NamedTuple):
+    """Numbers recorded of a batch of m motions after each step."""
+
+    series: Floats  # shape (steps, quantities, powers, m): Taylor coefficients of the rates, in `SMALL`
+    length: Floats  # shape (steps, m): of the steps
+    time: Floats  # shape (steps, m): at their ends
+
+    def of(self, elements: slice) -> "_Recorded":
+        """Return some of the motions."""
+        return _Recorded(*(each[..., elements] for each in self))
+
+
 class _Batch(NamedTuple):
     """The state of a batch of m motions."""
 
@@ -64,13 +77,13 @@ class _Batch(NamedTuple):
     well: NDArray[np.bool_]  # shape (m,)
     shortest: Floats  # shape (m,): step
     taken: NDArray[np.int64]  # shape (m,): steps
-    steps: list[Steps]
+    recorded: _Recorded | None
 
     def of(self, elements: slice) -> "_Batch":
         """Return some of the motions."""
-        steps = [part.of(elements) for part in self.steps]
+        recorded = None if self.recorded is None else self.recorded.of(elements)
         return _Batch(
-            self.reached[:, :, elements], self.well[elements], self.shortest[elements], self.taken[elements], steps
+            self.reached[:, :, elements], self.well[elements], self.shortest[elements], self.taken[elements], recorded
         )
 
 
@@ -105,7 +118,7 @@ class BatchEngine:
     ) -> None:
         heyoka = import_heyoka()
         self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
-        elements = self._elements = elements or (ELEMENTS_WITH_CALLBACK if along else ELEMENTS)
+        elements = self._elements = elements or ELEMENTS
         self._along, self._look, self._size = len(along), look, len(problem.state)
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
@@ -128,7 +141,7 @@ class BatchEngine:
         self._state, self._time = self._integrator.state, self._integrator.time
         self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
-        self._looking = _StepRecorder(self._integrator, self._behind) if along else None
+        self._recorder = _StepRecorder(self._integrator, self._behind) if along else None
         self._inputs = Inputs(problem)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
         self._corrections = None
@@ -153,24 +166,24 @@ class BatchEngine:
             One column for each motion.
         """
         k, elements = states.shape[1], self._elements
-        found, arrived, seen = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool), []
-        shortest, taken = np.empty(k), np.empty(k, dtype=int)
+        found, arrived = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool)
+        shortest, taken, looking = np.empty(k), np.empty(k, dtype=int), _Looking(self._look)
         starts = np.concatenate([states, np.zeros((len(ACCURACY_INTEGRALS) + self._along, k))])
         begun = self._energies(self._start, states, values)
         pars = np.concatenate([values, begun[None]])
         for first in range(0, k, elements):
             here = slice(first, min(first + elements, k))
             batch = self._batch(starts[:, here], pars[:, here], _of(stops, here))
-            found[:, :, here], arrived[here], shortest[here], taken[here], steps = batch
-            if self._along:
-                seen.append(self._look(steps))
-                arrived[here] &= ~np.isinf(seen[-1]).any(axis=0)
+            found[:, :, here], arrived[here], shortest[here], taken[here], recorded = batch
+            if recorded is not None:
+                looking.add(here, recorded)
+        numbers = looking.numbers(k)
+        arrived &= ~np.isinf(numbers).any(axis=0)
         reached = self._on_constraints(found[:, : self._size], values, stops, arrived)
         works, squares = np.moveaxis(found[:, self._size :], 1, 0) / SMALL
         gained = np.array([self._energies(*at, values) for at in zip(stops, reached, strict=True)]) - begun
         error = np.maximum(np.max(np.abs(gained - works), axis=0), np.sqrt(squares[-1] / shortest))
         exchanged = np.max(np.maximum(np.abs(gained), np.abs(works)), axis=0)
-        numbers = np.concatenate(seen, axis=1) if seen else np.empty((0, k))
         return BatchResult(reached, arrived, numbers, taken, error, exchanged)
 
     def _energies(self, times: float | Floats, states: Floats, values: Floats) -> Floats:
@@ -211,10 +224,9 @@ class BatchEngine:
 
     def _run(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[NDArray[np.bool_] | None, _Batch | None]:
         """Integrate a full batch through all stops. Return failed elements or the result."""
-        integrator, along, options = self._integrator, self._looking, {}
-        if along is not None:
-            along.clear()
-            options = {"callback": along, "write_tc": True}
+        integrator, recorder, options = self._integrator, self._recorder, {}
+        if recorder is not None:
+            options = {"callback": recorder.begin(), "write_tc": True}
         integrator.set_time(self._start)
         self._state[...], self._pars[...] = starts, pars
         integrator.pars[...] = pars
@@ -238,7 +250,7 @@ class BatchEngine:
             else:
                 return ~ended, None
             reached[place] = self._state[: self._behind]
-        return None, _Batch(reached, well, shortest, taken, along.steps() if along is not None else [])
+        return None, _Batch(reached, well, shortest, taken, None if recorder is None else recorder.recorded())
 
     def _keep(self, elements: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the elements whose block has ended before their motion."""
@@ -248,9 +260,9 @@ class BatchEngine:
             well &= ~(elements & strayed)
 
     def _nothing(self, stops: int, count: int) -> _Batch:
-        empty, none = np.full((2, 1, count), np.nan), np.zeros(count, dtype=int)
-        steps = [Steps(empty, empty[0], empty[0], 0.0) for _ in range(self._along)]
-        return _Batch(np.full((stops, self._behind, count), np.nan), none == 1, empty[0, 0], none, steps)
+        empty, none = np.full((1, self._along, 2, count), np.nan), np.zeros(count, dtype=int)
+        recorded = _Recorded(empty, empty[0, 0, :1], empty[0, 0, :1]) if self._along else None
+        return _Batch(np.full((stops, self._behind, count), np.nan), none == 1, np.full(count, np.nan), none, recorded)
 
 
 def _of(stops: Stops, elements: Any) -> Stops:
@@ -258,44 +270,89 @@ def _of(stops: Stops, elements: Any) -> Stops:
     return [stop if isinstance(stop, float) else stop[elements] for stop in stops]
 
 
-class _StepRecorder:
-    """A heyoka callback that records the polynomials of the quantities at each step.
+class _Looking:
+    """Numbers made of the quantities along motions, of many batches at once.
 
     Parameters
     ----------
+    look : callable
+        As for `BatchEngine`.
+    """
+
+    def __init__(self, look: Look) -> None:
+        self._look = look
+        self._waiting: dict[tuple[int, ...], list[tuple[slice, _Recorded]]] = {}
+        self._made: list[tuple[slice, Floats]] = []
+
+    def add(self, here: slice, recorded: _Recorded) -> None:
+        """Add a batch, which is looked at with others of the same number of steps."""
+        alike = self._waiting.setdefault(recorded.series.shape[:-1], [])
+        alike.append((here, recorded))
+        if len(alike) == TOGETHER:
+            self._look_at(alike)
+
+    def numbers(self, k: int) -> Floats:
+        """Return the numbers of all motions, shape (numbers, k)."""
+        for alike in self._waiting.values():
+            if alike:
+                self._look_at(alike)
+        numbers = np.empty((len(self._made[0][1]) if self._made else 0, k))
+        for here, made in self._made:
+            numbers[:, here] = made
+        return numbers
+
+    def _look_at(self, alike: list[tuple[slice, _Recorded]]) -> None:
+        places, recorded = zip(*alike, strict=True)
+        joined = _Recorded(*(np.concatenate(each, axis=-1) for each in zip(*recorded, strict=True)))
+        ends = np.cumsum([len(each.length[0]) for each in recorded])
+        self._made += zip(places, np.split(self._look(_steps(joined)), ends[:-1], axis=1), strict=True)
+        alike.clear()
+
+
+def _steps(recorded: _Recorded) -> list[Steps]:
+    """Return each quantity along the motions."""
+    series, length, time = recorded
+    powers, rescaled = series.shape[2], rates_of(series.shape[2], 1 / SMALL)
+    made = []
+    for each in np.moveaxis(series, 0, 2):
+        coefficients = rescaled(np.concatenate([each, length[None]]).reshape(powers + 1, -1))
+        made.append(Steps(coefficients.reshape(each.shape), time - length, length, 0.0))
+    return made
+
+
+class _StepRecorder:
+    """A recorder of the polynomials of the quantities at each step.
+
+    Parameters
+    ----------
+    integrator : heyoka.taylor_adaptive_batch
+        The integrator.
     first : int
-        Place in the state of the first of them.
+        Place in the state of the first of the quantities.
     """
 
     def __init__(self, integrator: Any, first: int) -> None:
-        self._rates = integrator.tc[first:, 1:]  # views of what the last step leaves
-        self._last_length, self._last_time = integrator.last_h, integrator.time
-        quantities, powers, elements = self._rates.shape
-        self._series = np.empty((quantities, powers, ROOM, elements))
-        self._length, self._time = np.empty((2, ROOM, elements))
-        self._rescaled, self._taken = rates_of(powers, 1 / SMALL), 0
-
-    def clear(self) -> None:
-        """Forget the steps."""
+        # views of what the last step leaves
+        self._last = integrator.tc[first:, 1:], integrator.last_h, integrator.time
+        self._room = _Recorded(*(np.empty((ROOM, *each.shape)) for each in self._last))
+        self._rows = list(zip(*self._room, strict=True))
         self._taken = 0
 
-    def __call__(self, integrator: Any) -> bool:
-        """Record the polynomials, the length and the time of the last step."""
-        taken = self._taken
-        if taken == len(self._time):
-            stored = self._series, self._length, self._time
-            twice = (np.concatenate([each, np.empty_like(each)], axis=-2) for each in stored)
-            self._series, self._length, self._time = twice
-        self._series[:, :, taken] = self._rates
-        self._length[taken], self._time[taken] = self._last_length, self._last_time
-        self._taken = taken + 1
-        return True
+    def begin(self) -> Callable[[Any], bool]:
+        """Return a callback that records the steps of a new batch."""
+        return partial(next, self._recording())  # a generator is called faster than a method
 
-    def steps(self) -> list[Steps]:
-        """Return each quantity along the elements."""
-        length, time = self._length[: self._taken], self._time[: self._taken]
-        made = []
-        for each in self._series[:, :, : self._taken]:
-            coefficients = self._rescaled(np.concatenate([each, length[None]]).reshape(len(each) + 1, -1))
-            made.append(Steps(coefficients.reshape(each.shape), time - length, length, 0.0))
-        return made
+    def _recording(self) -> Iterator[bool]:
+        last_series, last_length, last_time = self._last
+        self._taken = 0
+        while True:
+            for series, length, time in self._rows[self._taken :]:
+                series[...], length[...], time[...] = last_series, last_length, last_time
+                self._taken += 1
+                yield True
+            self._room = _Recorded(*(np.concatenate([each, np.empty_like(each)]) for each in self._room))
+            self._rows = list(zip(*self._room, strict=True))
+
+    def recorded(self) -> _Recorded:
+        """Return the steps of the last batch."""
+        return _Recorded(*(each[: self._taken].copy() for each in self._room))

@@ -9,7 +9,8 @@ Every operation is done element by element. The result for a motion does not dep
 """
 
 from collections.abc import Callable, Sequence
-from functools import cache
+from dataclasses import dataclass, replace
+from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +29,8 @@ HALVINGS = 60  # of a step; below that numbers are too coarse to distinguish its
 Floats = NDArray[np.float64]
 
 
-class Steps(NamedTuple):
+@dataclass(frozen=True)
+class Steps:
     """A quantity along motions, step by step."""
 
     coefficients: Floats  # shape (powers, steps, elements): in powers of x
@@ -37,6 +39,11 @@ class Steps(NamedTuple):
     length: Floats
     least: float  # x runs from this, 0 or -1, to 1
 
+    @cached_property
+    def sizes(self) -> Floats:
+        """Bounds and sizes of each polynomial, as `polynomials.sizes_of` returns them."""
+        return _sizes(self.coefficients)
+
     def negative(self) -> "Steps":
         """Return the quantity with the opposite sign.
 
@@ -44,7 +51,7 @@ class Steps(NamedTuple):
         -------
         Steps
         """
-        return self._replace(coefficients=-self.coefficients)
+        return replace(self, coefficients=-self.coefficients)
 
     def resolved(self, least: float | Floats = 0.0) -> NDArray[np.bool_]:
         """Return True for elements with a quantity resolved relative to its largest size.
@@ -58,7 +65,7 @@ class Steps(NamedTuple):
         -------
         ndarray of bool, shape (elements,)
         """
-        bounds, _, sizes, last = _sizes(self.coefficients)
+        bounds, _, sizes, last = self.sizes
         resolved = last.max(axis=0) <= RESOLVED * np.maximum(sizes.max(axis=0), least)
         return resolved & np.isfinite(bounds).all(axis=0)
 
@@ -74,23 +81,9 @@ class Steps(NamedTuple):
         -------
         ndarray of bool, shape (elements,)
         """
-        bounds, _, sizes, last = _sizes(self.coefficients)
+        bounds, _, sizes, last = self.sizes
         later = self.middle + self.least * self.length > times
         return (later | (last <= RESOLVED * sizes) & np.isfinite(bounds)).all(axis=0)
-
-    def of(self, elements: Any) -> "Steps":
-        """Return some of the elements.
-
-        Parameters
-        ----------
-        elements : slice, int or ndarray
-            Index into the last axis.
-
-        Returns
-        -------
-        Steps
-        """
-        return Steps(self.coefficients[:, :, elements], self.middle[:, elements], self.length[:, elements], self.least)
 
 
 def largest(steps: Steps) -> Floats:
@@ -139,7 +132,7 @@ def first_zero(steps: Steps) -> Floats:
     ndarray, shape (elements,)
         inf where rounding decides: it moves the zero, or the quantity has been so large that its sign is rounding.
     """
-    sizes = np.abs(steps.coefficients[0]) + _bounds(steps.coefficients)[0]
+    sizes = np.abs(steps.coefficients[0]) + _bounds(steps.coefficients, steps.sizes)[0]
     parts = _without_turns(steps, ROUNDING * sizes)
     found = _first_crossing(steps, parts, ROUNDING * sizes)
     of_largest = _first_crossing(steps, parts, ROUNDING * np.maximum.accumulate(sizes))
@@ -202,7 +195,7 @@ def _without_turns(steps: Steps, rounding: Floats) -> _Parts:
         waiting = waiting.half_of(1.0)
     found = []
     for _ in range(HALVINGS):
-        reach, turns = _bounds(waiting.coefficients)
+        reach, turns = _bounds(waiting.coefficients, _sizes(waiting.coefficients))
         size = np.abs(waiting.coefficients[0])
         open_ = turns & (size <= reach) & (size + reach > rounding[waiting.step, waiting.element])
         found.append(waiting.of(~open_))
@@ -224,7 +217,7 @@ def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
     """
     polynomials, places = steps.coefficients, _places(steps.least)
     found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
-    reach, turns = _bounds(polynomials)
+    reach, turns = _bounds(polynomials, steps.sizes)
     step, element = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
     values = _values(polynomials[:, step, element], places)
     sizes = np.full((SAMPLES + 2, len(step)), -np.inf)
@@ -249,14 +242,14 @@ def _values(polynomials: Floats, places: tuple[float, ...]) -> Floats:
     return values_at(powers, places)(polynomials.reshape(powers, -1)).reshape(len(places), *shape)
 
 
-def _bounds(polynomials: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+def _bounds(polynomials: Floats, sizes: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     """Bound the distance of polynomials from their constants for |x| <= 1.
 
     The second array is True if the slope can vanish there.
     """
-    reach, bend, *_ = _sizes(polynomials)
-    sizes = np.abs(polynomials[:2])
-    return reach + MARGIN * (reach + sizes[0]), sizes[1] <= bend + MARGIN * (bend + sizes[1])
+    reach, bend, *_ = sizes
+    constant, slope = np.abs(polynomials[:2])
+    return reach + MARGIN * (reach + constant), slope <= bend + MARGIN * (bend + slope)
 
 
 def _sizes(polynomials: Floats) -> Floats:
