@@ -20,6 +20,7 @@ from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, Origin
 from ..program.rewriting import computing
 from ..program.sign_pattern import at_start, problem_in
+from .constraints.directions import or_one
 from .evaluation import Numbers, batch_evaluation
 from .inputs import Inputs
 from .matrices import BatchMatrices
@@ -441,15 +442,34 @@ def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redun
         NaN for a singular system.
     """
     b, u, elements = jacobian.shape
+    with np.errstate(invalid="ignore"):  # nan for what is not finite
+        lengths = np.sqrt(np.abs(np.diagonal(mass)).T) if mass is not None else _largest_shares(jacobian)
+        columns = _units_near(lengths)
+        rows = _lengths(jacobian / columns)
+        jacobian, right = jacobian / columns / rows, -(residual / rows[:, 0]).T
     if mass is None:
-        matrix, right = np.moveaxis(jacobian, 2, 0), -residual.T
+        matrix = np.moveaxis(jacobian, 2, 0)
     else:
         matrix = np.zeros((elements, u + b, u + b))
-        matrix[:, :u, :u] = np.moveaxis(mass, 2, 0)
+        matrix[:, :u, :u] = np.moveaxis(mass / columns[:, None] / columns, 2, 0)
         matrix[:, :u, u:] = -np.moveaxis(jacobian, 2, 0).swapaxes(1, 2)
         matrix[:, u:, :u] = np.moveaxis(jacobian, 2, 0)
-        right = np.concatenate([np.zeros((elements, u)), -residual.T], axis=1)
-    return _solution(matrix, right, redundant and mass is not None)[:, :u].T
+        right = np.concatenate([np.zeros((elements, u)), right], axis=1)
+    return _solution(matrix, right, redundant and mass is not None)[:, :u].T / columns
+
+
+def _largest_shares(jacobian: Numbers) -> Numbers:
+    """Return the largest shares of unknowns in gradients, shape (u, k)."""
+    return np.max(np.abs(jacobian) / _lengths(jacobian), axis=0, initial=0.0)
+
+
+def _lengths(jacobian: Numbers) -> Numbers:
+    return _units_near(np.linalg.norm(jacobian, axis=1, keepdims=True))
+
+
+def _units_near(sizes: Numbers) -> Numbers:
+    """Return powers of two, by which numbers are divided exactly, one for zero."""
+    return 2.0 ** np.round(np.log2(or_one(sizes)))
 
 
 def _solution(matrices: Numbers, rights: Numbers, redundant: bool) -> Numbers:

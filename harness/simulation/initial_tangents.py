@@ -14,6 +14,7 @@ from ..language import translatable
 from ..program.differentiation import derivative_name, differentiated
 from ..program.motion_problem import MotionProblem
 from ..program.numpy_function import NumpyFunction
+from .constraints.directions import or_one
 from .evaluation import Numbers
 from .initial_state import least_step
 from .matrices import Matrices, MotionMatrices, start_of
@@ -75,7 +76,7 @@ def initial_tangents(problem: MotionProblem, analytic: MotionProblem, directions
         for k, name in enumerate(directions):
             column = moves[half * n :][:n, k]
             for free in _free(problem, half, name):
-                _require_unique(problem, here, free, name)
+                _require_unique(problem, here, sizes, free, name)
                 missed = constraints(t, state, moves)[half][:, k]
                 column[free] += _least(here, missed, free)
                 largest = sizes * np.max(np.abs(column) / sizes)
@@ -121,14 +122,17 @@ def _free(problem: MotionProblem, half: int, direction: str) -> Iterator[NDArray
         yield np.array([s for s, _ in others], dtype=int)
 
 
-def _require_unique(problem: MotionProblem, at: Matrices, free: NDArray[np.int64], direction: str) -> None:
+def _require_unique(
+    problem: MotionProblem, at: Matrices, sizes: Numbers, free: NDArray[np.int64], direction: str
+) -> None:
     """Reject an initial state that is the nearest of many to an inconsistent guess.
 
     It moves with the curvature of the constraints, too.
     """
     if direction in problem.state or problem.initial.moved is None or float(problem.initial.moved[1]) == 0:
         return
-    if np.linalg.matrix_rank(at.jacobian[:, free]) < len(free):
+    jacobian = (at.jacobian * sizes)[:, free]
+    if np.linalg.matrix_rank(jacobian / or_one(np.linalg.norm(jacobian, axis=1))[:, None]) < len(free):
         reason = translatable("it is the nearest of many to initial_guess; give more of it in initial_state")
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
 

@@ -35,10 +35,10 @@ from .evaluation import Numbers
 from .impulses import moves_behind_impulse
 from .initial_tangents import initial_tangents
 from .mode import Mode
-from .nominal import nominal_of
+from .nominal import Nominal, nominal_of
 from .recording import SampleBlock
 from .variation import TIME, Variation, size_of
-from .variational_equations import VariationalEquations, largest, units_of
+from .variational_equations import VariationalEquations, largest
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
@@ -73,9 +73,17 @@ class _ModeVariation:
         self._integrator = self._compiled()
 
     def _compiled(self) -> Any:
-        options = tolerance_of(self.problem, self._tol) | self._code.options
-        kind = *self.variation.kind, *options.items()
+        options = self._tolerance | self._code.options
+        units = self.variation.units
+        kind = *self.variation.kind, float(units.time), *units.state.tolist(), *options.items()
         return copy(self.problem.once(kind, self.problem.motion, partial(self._made, options)))
+
+    @property
+    def _tolerance(self) -> dict[str, float]:
+        """Option of the integrator: relative to the largest number in its units."""
+        nominal, units = nominal_of(self.problem), self.variation.units
+        near = Nominal(nominal.time / units.time, nominal.state / units.state).absolute()
+        return {"tol": (float(np.finfo(float).eps) if self._tol is None else self._tol) * near}
 
     def _made(self, options: Mapping[str, object]) -> Any:
         equations = self.variation.equations()
@@ -89,29 +97,32 @@ class _ModeVariation:
         `left` is the remaining time of the motion at the start of the part. The state and the projected derivatives
         at its end are returned with it.
         """
-        integrator, units, half = self._integrator, units_of(state, moves), (start + end) / 2
-        integrator.time = start
-        integrator.state[:] = np.concatenate([state, (moves / units).ravel()])
+        integrator, (unit, sizes), half = self._integrator, self.variation.units, (start + end) / 2
+        scaled, rows = state / sizes, sizes[:, None]
+        units = self.variation.columns(scaled, moves / rows)
+        integrator.time = start / unit
+        integrator.state[:] = np.concatenate([scaled, (moves / rows / units).ravel()])
         integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]
-        *_, steps, between, _ = integrator.propagate_until(end, c_output=True)
-        if integrator.time != end or not np.isfinite(integrator.state).all():
+        *_, steps, between, _ = integrator.propagate_until(end / unit, c_output=True)
+        if integrator.time != end / unit or not np.isfinite(integrator.state).all():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
                 detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
             )
         reached, grown = np.split(integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
-        if steps > 1 and start < half < end and np.max(np.abs(grown)) > largest(state, reached):
+        if steps > 1 and start < half < end and np.max(np.abs(grown)) > largest(scaled, reached):
             first, *there = self.integrate(start, state, moves, half, left)
             second, *there = self.integrate(half, *there, end, left)
             return first + second, *there
 
         def derivatives(times: Numbers) -> Numbers:
-            return units[:, None] * np.reshape(between(times).T[len(state) :], (*moves.shape, len(times)))
+            found = np.reshape(between(times / unit).T[len(state) :], (*moves.shape, len(times)))
+            return (rows * units)[:, :, None] * found
 
         self._compile_if_worthwhile(steps * left / (end - start))
-        moves_there = self.variation.corrected(end, reached, units * grown.reshape(moves.shape))
-        return [_Segment(start, end, self, derivatives)], reached, moves_there
+        there = sizes * reached, rows * units * grown.reshape(moves.shape)
+        return [_Segment(start, end, self, derivatives)], there[0], self.variation.corrected(end, *there)
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the time derivative of the state, shape (2n,)."""
@@ -373,21 +384,3 @@ class Sensitivities:
             lambda: switching_function(whole, "switch", changed[0], pattern),
         )
         return _Zero(whole, program, *program.outputs)
-
-
-def tolerance_of(problem: MotionProblem, tol: float | None) -> dict[str, float]:
-    """Return heyoka's tolerance of a step.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion, which gives the nominal sizes.
-    tol : float or None
-        Relative tolerance of a step, or None for the rounding of doubles.
-
-    Returns
-    -------
-    dict of str to float
-        Option ``tol`` of the integrator.
-    """
-    return {"tol": (float(np.finfo(float).eps) if tol is None else tol) * nominal_of(problem).absolute()}

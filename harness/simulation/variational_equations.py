@@ -4,7 +4,8 @@ With the state x = (q, dot q), dx/dt = F(t, x, p) and X = dx/dp,
 
     dX/dt = F_x X + F_p.
 
-They are linear, so each column of X may be integrated in a unit of its own, with F_p in the same unit.
+They are linear, so each column of X may be integrated in a unit of its own, with F_p in the same unit. State and time
+are integrated in units near their nominal sizes.
 """
 
 from collections.abc import Sequence
@@ -20,12 +21,15 @@ from ..program.motion_program import Name, Program
 from ..program.rewriting import computing
 from .constraints.factorization import factored_constraints
 from .constraints.stabilization import Equations
+from .engines.scaled_time import in_unit
 from .evaluation import Numbers
 from .initial_tangents import ConstraintVariation
 from .inputs import Inputs, heyoka_inputs
 from .matrices import MotionMatrices
+from .nominal import Nominal
 from .variation import size_of
 
+NEAR = 10  # powers of two between such units
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
 
@@ -57,11 +61,14 @@ class VariationalEquations:
             )
         self.problem, self.directions, self.kind = problem, tuple(directions), ("variational", *directions)
         self._matrices, self.inputs = matrices, Inputs(problem)
+        self.units = Nominal(*map(_units_near, matrices.nominal))
         self.constraints = ConstraintVariation(problem, self.directions)
         parameters = [name for name in self.directions if name in problem.parameters]
         self._seeds = {name: derivative_name(name, name) for name in parameters}
         self._sizes = np.array([float(size_of(problem, name)) for name in parameters])
         self._places = [self.directions.index(name) for name in parameters]
+        own = dict(zip(problem.state, self.units.state, strict=True))
+        self._least = np.array([1 / own.get(name, 1.0) for name in self.directions])
         self.program = problem.once(self.kind, problem.motion, self._differentiated)
 
     def _differentiated(self) -> Program:
@@ -75,20 +82,22 @@ class VariationalEquations:
         Returns
         -------
         list of (expression, expression)
-            Variable and time derivative: the state, then each row of X.
+            Variable and time derivative: the state, then each row of X, all in `units`.
         """
         heyoka, problem, n = import_heyoka(), self.problem, len(self.problem.coordinates)
+        sizes = dict(zip(problem.state, map(float, self.units.state), strict=True))
         given, count = heyoka_inputs(problem), len(problem.open_inputs)
         seeds = {name: heyoka.par[count + place] for place, name in enumerate(self._seeds.values())}
-        names = [derivative_name(name, k) for name in problem.state for k in self.directions]
-        moving = {name: heyoka.expression(name) for name in names}
+        sizes |= {derivative_name(name, k): sizes[name] for name in problem.state for k in self.directions}
+        variables = {name: given.get(name, heyoka.expression(name)) for name in sizes}
+        moving = {name: sizes[name] * variable for name, variable in variables.items()}
         found = heyoka_expressions(self.program, given | moving | seeds)
-        variables = {name: given[name] for name in problem.state} | moving
         accelerations = [f"ddot({q})" for q in problem.coordinates]
-        rates = [given[name] for name in problem.state[n:]] + [found[name] for name in accelerations]
+        rates = [moving[name] for name in problem.state[n:]] + [found[name] for name in accelerations]
         rates += [moving[derivative_name(v, k)] for v in problem.state[n:] for k in self.directions]
         rates += [found[derivative_name(name, k)] for name in accelerations for k in self.directions]
-        return list(zip(variables.values(), rates, strict=True))
+        scaled = [(variables[name], rate / sizes[name]) for name, rate in zip(variables, rates, strict=True)]
+        return in_unit(scaled, float(self.units.time))
 
     def values(self, t: float, units: Numbers) -> Numbers:
         """Return heyoka's parameters from a time on.
@@ -98,7 +107,7 @@ class VariationalEquations:
         t : float
             The time.
         units : ndarray, shape (p,)
-            Unit of each column of X.
+            Unit of each column of X, beside that of each row.
 
         Returns
         -------
@@ -106,6 +115,26 @@ class VariationalEquations:
             Open inputs, then derivatives of the parameters by themselves.
         """
         return np.concatenate([self.inputs.open_values(t, "right"), self._sizes / units[self._places]])
+
+    def columns(self, state: Numbers, moves: Numbers) -> Numbers:
+        """Return units in which derivatives are smaller than the state.
+
+        Then the state decides about steps. They may grow by `GROWTH` until they are as large.
+
+        Parameters
+        ----------
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities, in `units`.
+        moves : ndarray, shape (2n, p)
+            X, its rows in `units`.
+
+        Returns
+        -------
+        ndarray, shape (p,)
+            Powers of two, not below those of the directions.
+        """
+        ratio = GROWTH * np.max(np.abs(moves), axis=0) / largest(state)
+        return 2.0 ** np.ceil(np.log2(np.maximum(ratio, self._least)))
 
     def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
         """Return the nearest derivatives in the mass metric that satisfy the constraints.
@@ -140,7 +169,7 @@ def largest(*states: Numbers) -> float:
     Parameters
     ----------
     *states : ndarray, shape (2n,)
-        Coordinates, then velocities.
+        Coordinates, then velocities, in units near their sizes.
 
     Returns
     -------
@@ -150,22 +179,6 @@ def largest(*states: Numbers) -> float:
     return max(1.0, *(float(np.max(np.abs(state))) for state in states))
 
 
-def units_of(state: Numbers, moves: Numbers) -> Numbers:
-    """Return units in which derivatives are smaller than the state.
-
-    Then the state decides about steps. They may grow by `GROWTH` until they are as large.
-
-    Parameters
-    ----------
-    state : ndarray, shape (2n,)
-        Coordinates, then velocities.
-    moves : ndarray, shape (2n, p)
-        X.
-
-    Returns
-    -------
-    ndarray, shape (p,)
-        Powers of two, not below one.
-    """
-    ratio = GROWTH * np.max(np.abs(moves), axis=0) / largest(state)
-    return 2.0 ** np.ceil(np.log2(np.maximum(ratio, 1.0)))
+def _units_near(sizes: float | Numbers) -> float | Numbers:
+    """Return powers of two near sizes, the same ones for similar sizes."""
+    return 2.0 ** (NEAR * np.round(np.log2(sizes) / NEAR))

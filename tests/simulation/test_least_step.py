@@ -36,11 +36,22 @@ def test_without_a_metric_it_is_the_only_one():
         assert found[:, k] == pytest.approx(-np.linalg.inv(jacobian[:, :, k]) @ residual[:, k])
 
 
-def test_more_constraints_than_unknowns_are_met_in_the_mean():
-    jacobian, residual = RANDOM.normal(size=(3, 2, ELEMENTS)), RANDOM.normal(size=(3, ELEMENTS))
-    found = least_step(None, jacobian, residual, False)
-    for k in range(ELEMENTS):
-        assert jacobian[:, :, k].T @ (jacobian[:, :, k] @ found[:, k] + residual[:, k]) == pytest.approx(0, abs=1e-12)
+def test_more_constraints_than_unknowns_are_met_if_they_agree():
+    jacobian, wanted = RANDOM.normal(size=(3, 2, ELEMENTS)), RANDOM.normal(size=(2, ELEMENTS))
+    found = least_step(None, jacobian, np.einsum("buk,uk->bk", jacobian, -wanted), False)
+    assert found == pytest.approx(wanted)
+
+
+@pytest.mark.parametrize("redundant", [False, True])
+def test_units_of_unknowns_and_constraints_change_nothing(redundant):
+    """A mass of 1e-27 beside a gradient of 1e-10 counted as rounding, so that the step was another."""
+    mass, jacobian, residual = metric(3), RANDOM.normal(size=(2, 3, ELEMENTS)), RANDOM.normal(size=(2, ELEMENTS))
+    if redundant:
+        jacobian, residual = np.concatenate([jacobian, jacobian[:1]]), np.concatenate([residual, residual[:1]])
+    units, areas = np.array([1e-10, 1.0, 1e9])[:, None], np.array([1e-20, 1.0, 1e3])[: len(residual), None]
+    masses = 1e-27 * mass / units[:, None] / units
+    found = least_step(masses, areas[:, None] * jacobian / units, areas * residual, redundant)
+    assert found / units == pytest.approx(least_step(mass, jacobian, residual, redundant), rel=1e-12)
 
 
 @pytest.mark.parametrize("constraints", [2, 3])

@@ -5,6 +5,7 @@ from math import cosh, sinh, sqrt
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -381,3 +382,28 @@ def test_an_initial_value_more_than_is_needed_was_refused():
     by_inertia = -t * np.sin(w * t) * w / (2 * inertia)
     assert motion["d(x, m)"] == pytest.approx(by_inertia, abs=1e-13)
     assert motion["d(x, r)"] == pytest.approx(by_inertia * -2 / 0.5**3, abs=1e-12)
+
+
+IN_UNITS = """m_ : {mass}$ l_ : {length}$ t_ : {time}$
+system : holonomic_system(coordinates = [x, y, phi], parameters = [l, g, k],
+  kinetic_energy = m_*(dot(x)^2 + dot(y)^2 + l_^2*dot(phi)^2)/2,
+  potential_energy = [gravity = m_*g*y, spring = k*phi^2*(2 + x/l_)/2], constraints = [x^2 + y^2 - l^2, phi - x/l])$
+s : holonomic_scene(system, parameter_values = [l = l_, g = 10*l_/t_^2, k = m_*l_^2/t_^2],
+  initial_state = [x = 3*l/5, dot(x) = 0], initial_guess = [y = -l, phi = 1, dot(y) = 0, dot(phi) = 0],
+  time_span = [0, 2*t_])$
+"""
+
+
+@pytest.mark.parametrize("units", [("1/10^27", "1/10^10", "1/10^13"), ("10^30", "10^9", "10^7")])
+def test_derivatives_in_other_units(units):
+    """In units of atoms they were refused as not finite: they were integrated in seconds."""
+
+    def moved(mass, length, time):
+        text = IN_UNITS.format(mass=mass, length=length, time=time)
+        found = holonom.system(text).simulate(samples=5, sensitivities=["l", "g", "k", "x"])
+        length, time, mass = (float(sp.sympify(each.replace("^", "**"))) for each in (length, time, mass))
+        unit_of = {"l": length, "g": length / time**2, "k": mass * length**2 / time**2, "x": length}
+        angles = np.array([found[f"d(phi, {name})"] * unit for name, unit in unit_of.items()])
+        return np.concatenate([angles, [found["d(x, l)"], found["d(dot(y), g)"] / time]])
+
+    assert moved(*units) == pytest.approx(moved("1", "1", "1"), rel=1e-9, abs=1e-9)
