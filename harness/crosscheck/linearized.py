@@ -472,7 +472,8 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
             used = [name for name in reactions if any(each["multipliers"][name] for each in found)]
             none = dict.fromkeys(_symbols(name for name in reactions if name not in used), 0)
             count = count_real_solutions([each.subs(none) for each in equations_at_rest], _symbols((*q, *used)))
-        yield Condition("number of solutions", None if count is None else count - content["count"])
+        signs = 2 ** len(content["reversals"])
+        yield Condition("number of solutions", None if count is None else count - signs * content["count"])
     known: list[Vector] = []
     for each in found:
         place = f"{each['name']}: "
@@ -482,6 +483,9 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         for other in known:
             apart = position - other
             apart[turning] -= 2 * np.pi * np.round(apart[turning] / (2 * np.pi))
+            for e in content["reversals"]:
+                if position[np.isin(q, e)] @ other[np.isin(q, e)] < 0:
+                    apart = np.where(np.isin(q, e), position + other, apart)
             same = np.all(np.abs(apart) <= 10.0**-DIGITS * (1 + np.abs(position)))
             yield Condition(f"{place}another equilibrium", bool(same))
         known.append(position)
@@ -520,6 +524,13 @@ def _conditions_on_turns(
     q, reactions = (equations.names(group) for group in ("q", "lambda"))
     drawn = np.random.default_rng(1).normal(size=len(q) + len(reactions))
     point = {**at_rest, **dict(zip((*q, *reactions), map(float, drawn), strict=True))}
+    for e in content["reversals"]:
+        signs = np.where(np.isin(q, e), -1.0, 1.0)
+        here, there = (equations.at({**point, **{name: sign * point[name] for name in e}}) for sign in (1.0, -1.0))
+        yield Condition(f"signs of {e}", signs * there["equation"] - here["equation"], 1 + np.abs(here["equation"]))
+        yield Condition(f"signs of {e}", there["constraint"] - here["constraint"], 1 + np.abs(here["constraint"]))
+        inertia = here["equation_by_a"] @ np.where(signs < 0, [point[name] for name in q], 0.0)
+        yield Condition(f"inertia along {e}", inertia, 1 + np.abs(here["equation_by_a"]).max())
     for name in content["turns"]:
         here, there = (equations.at({**point, name: point[name] + turn}) for turn in (0.0, 2 * np.pi))
         for row in ("equation", "constraint"):

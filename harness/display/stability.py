@@ -123,6 +123,8 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
         console.print(f"{equilibria.singular} starts led to singular configurations, which are not classified.")
     if equilibria.turns:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
+    for e in equilibria.reversals:
+        console.print(f"Of both signs of {', '.join(e)}, one is listed.")
 
 
 def show_branches(console: "Console", branches: "Branches") -> None:

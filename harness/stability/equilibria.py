@@ -30,6 +30,7 @@ from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry
+from .equivalence import TURN, Equivalence
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .tangent import Tangent
@@ -55,9 +56,9 @@ FARTHEST = 1e-4  # such a step in terms of the sizes: forces of fourth order van
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
-TURN = 2 * np.pi
-PROBES = 5  # random states at which whole turns of a coordinate are tried
-UNTURNED = 1e-9  # relative change of an equation by such turns that is none
+EULER_PARAMETERS = 4
+PROBES = 5  # random states at which whole turns and reversals of coordinates are tried
+UNCHANGED = 1e-9  # relative change of an equation by them that is none
 
 
 class Stability(StrEnum):
@@ -124,9 +125,11 @@ class Equilibria(Documented, Shown):
         Solutions in or near singular configurations, which are not classified.
     turns : tuple of str
         Coordinates that may be changed by whole turns.
+    reversals : tuple of tuple of str
+        Euler parameters of each body: both signs are the same orientation.
     count : int or None
-        Number of real solutions, by a Groebner basis and Hermite's form. None if the equations are not polynomial, too
-        large, or have infinitely many complex solutions.
+        Number of real solutions up to turns and signs, by a Groebner basis and Hermite's form. None if the equations
+        are not polynomial, too large, or have infinitely many complex solutions.
 
     Examples
     --------
@@ -145,12 +148,13 @@ class Equilibria(Documented, Shown):
     more: int = entry("Further solutions of the families of those that are not isolated.", minimum=0)
     singular: int = entry("Solutions in or near singular configurations, which are not classified.", minimum=0)
     turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
+    reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")
     count: int | None = entry("Number of real solutions, exactly; null if it is not known.", minimum=0)
 
     @property
-    @computed("Whether those found are all, up to whole turns.")
+    @computed("Whether those found are all, up to whole turns and signs of Euler parameters.")
     def complete(self) -> bool:
-        """True if these are all equilibria, up to whole turns."""
+        """True if these are all equilibria, up to turns and signs."""
         return len(self.found) == self.count and all(each.isolated for each in self.found)
 
     def __getitem__(self, name: str) -> Equilibrium:
@@ -209,15 +213,16 @@ def find_equilibria(
         raise HolonomError(ErrorKind.NEVER_AT_REST)
     values = _constant_controls(problem, equations, controls)
     search = _Search(problem, equations, list(values.values()))
-    turns = search.turns(np.random.default_rng(seed))
+    same = search.equivalence(np.random.default_rng(seed))
     points = search.starts(starts, np.random.default_rng(seed), near)
-    found, *left_out = search.equilibria(points, turns)
-    names = tuple(equations.coordinates[place] for place in turns)
+    found, *left_out = search.equilibria(points, same)
+    turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
+    names = turns, tuple(reversals)
     solutions = solve_exactly(equations, problem.independent, list(values.values()))
     if solutions is None:
-        return Equilibria(problem.scene, values, starts, found, *left_out, names, None)
+        return Equilibria(problem.scene, values, starts, found, *left_out, *names, None)
     exact = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
-    return Equilibria(problem.scene, values, starts, exact, *left_out, names, solutions.count)
+    return Equilibria(problem.scene, values, starts, exact, *left_out, *names, solutions.count >> len(reversals))
 
 
 def _constant_controls(
@@ -262,26 +267,51 @@ class _Search:
             return len(self._independent)
         return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
 
-    def turns(self, random: np.random.Generator) -> list[int]:
-        """Return indices of coordinates that whole turns leave equivalent.
+    def equivalence(self, random: np.random.Generator) -> Equivalence:
+        """Return the changes of coordinates that leave a state as it is.
 
-        The test is at random states.
+        They are tried at random states.
         """
         states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
-        forces = random.normal(size=len(self._equations.multipliers))
-
-        def same(q: Vector, turned: Vector) -> bool:
-            one, other = (self._at(state, forces) for state in (q, turned))
-            return all(
-                np.all(
-                    np.abs(one[name] - other[name])
-                    <= UNTURNED * np.abs(one[name]) + ROUNDING * np.abs(other[f"{name}_by_q"]) @ np.abs(turned)
-                )
-                for name in ("equation", "constraint")
-            )
-
+        multipliers = random.normal(size=len(self._equations.multipliers))
+        ones = np.ones(self._n)
         steps = np.diag(TURN * np.ceil(np.maximum(1.0, self._sizes / TURN)))
-        return [place for place, step in enumerate(steps) if all(same(q, q + step) for q in states)]
+        turns = [k for k, step in enumerate(steps) if self._unchanged(states, multipliers, ones, step)]
+        reversals = [
+            places
+            for places in self._normalised(states, multipliers)
+            if self._unchanged(states, multipliers, np.where(np.isin(np.arange(self._n), places), -1.0, 1.0), 0 * ones)
+        ]
+        return Equivalence(turns, reversals)
+
+    def _unchanged(self, states: Sequence[Vector], multipliers: Vector, signs: Vector, step: Vector) -> bool:
+        """Return True if changed signs or turns leave the equations equivalent."""
+        for q in states:
+            changed = signs * q + step
+            one, other = (self._at(state, multipliers) for state in (q, changed))
+            for name, factor in (("equation", signs), ("constraint", 1.0)):
+                rounding = ROUNDING * np.abs(other[f"{name}_by_q"]) @ np.abs(changed)
+                if np.any(np.abs(one[name] - factor * other[name]) > UNCHANGED * np.abs(one[name]) + rounding):
+                    return False
+        return True
+
+    def _normalised(self, states: Sequence[Vector], multipliers: Vector) -> list[list[int]]:
+        """Return the places of Euler parameters.
+
+        They have a constraint e . e = 1, and no inertia along e.
+        """
+        found = [self._all_constraints(q, multipliers) for q in states]
+        slopes = np.array([here["constraint_by_q"] for here in found])  # by state, constraint and coordinate
+        places = [np.flatnonzero(slopes[:, beta].any(axis=0)) for beta in range(slopes.shape[1])]
+        return [
+            e.tolist()
+            for beta, e in enumerate(places)
+            if len(e) == EULER_PARAMETERS
+            and all(
+                np.all(slope[beta, e] == 2 * q[e]) and _vanishes(here["equation_by_a"][:, e], q[e])
+                for slope, q, here in zip(slopes, states, found, strict=True)
+            )
+        ]
 
     def starts(self, count: int, random: np.random.Generator, near: Iterable[Equilibrium]) -> Matrix:
         """Return starting points, shape (n, k).
@@ -293,7 +323,7 @@ class _Search:
         given = [list(each.coordinates.values()) for each in near]
         return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1)), *given])
 
-    def equilibria(self, starts: Matrix, turns: Sequence[int]) -> tuple[tuple[Equilibrium, ...], int, int]:
+    def equilibria(self, starts: Matrix, same: Equivalence) -> tuple[tuple[Equilibrium, ...], int, int]:
         """Return the equilibria that Newton's method finds, and the number left out.
 
         Those left out are further ones of families, and singular ones.
@@ -303,8 +333,8 @@ class _Search:
         known: list[_Solution] = []
         more = singular = 0
         for q, multipliers in filter(self._satisfies_all_constraints, self._solved(starts)):
-            q[turns] -= TURN * np.ceil(q[turns] / TURN - 0.5 - SAME)  # the angle pi, not -pi
-            if any(self._close(q, other.q, turns) for other in known):
+            q = same.chosen(q)
+            if any(self._close(q, other.q, same) for other in known):
                 continue
             stiffness = self._stiffness(q, multipliers)
             if stiffness is None:
@@ -313,7 +343,7 @@ class _Search:
             found = _Solution(q, multipliers, *stiffness)
             if not found.isolated and not self._is_zero_nearby(found):
                 continue
-            if (place := self._unresolved(found, known, turns)) is not None:
+            if (place := self._unresolved(found, known, same)) is not None:
                 known[place] = found if known[place].isolated else known[place]
                 continue
             if any(found.same_family(other) for other in known):
@@ -490,18 +520,16 @@ class _Search:
         """Set entries at the level of rounding errors to zero."""
         return np.where(np.abs(q) <= ROUNDING * self._sizes, 0.0, q)
 
-    def _unresolved(self, found: "_Solution", known: Sequence["_Solution"], turns: Sequence[int]) -> int | None:
+    def _unresolved(self, found: "_Solution", known: Sequence["_Solution"], same: Equivalence) -> int | None:
         """Return the index of a known solution nearby, if one of both is not isolated."""
         for place, other in enumerate(known):
-            if not (found.isolated and other.isolated) and self._close(found.q, other.q, turns, UNRESOLVED):
+            if not (found.isolated and other.isolated) and self._close(found.q, other.q, same, UNRESOLVED):
                 return place
         return None
 
-    def _close(self, one: Vector, other: Vector, turns: Sequence[int], distance: float = SAME) -> bool:
-        apart = one - other
-        apart[turns] -= TURN * np.round(apart[turns] / TURN)
+    def _close(self, one: Vector, other: Vector, same: Equivalence, distance: float = SAME) -> bool:
         sizes = np.maximum(self._sizes, np.maximum(np.abs(one), np.abs(other)))
-        return bool(np.all(np.abs(apart) <= distance * sizes))
+        return bool(np.all(np.abs(same.apart(one, other)) <= distance * sizes))
 
     def _at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
         return self._equations.at(self._point(q, multipliers), self._independent)
@@ -540,6 +568,11 @@ class _Solution(NamedTuple):
         apart = np.max(np.abs(self._principal - other._principal), initial=0.0)
         alike = _same(self.multipliers, other.multipliers) and apart <= SAME * max(self.bound, other.bound)
         return bool(alike and not self.isolated and not other.isolated)
+
+
+def _vanishes(matrix: Matrix, vector: Vector) -> bool:
+    """Return True if the product is zero to rounding errors."""
+    return bool(np.all(np.abs(matrix @ vector) <= ROUNDING * np.abs(matrix) @ np.abs(vector)))
 
 
 def _same(one: Vector, other: Vector) -> bool:

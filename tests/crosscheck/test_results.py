@@ -184,6 +184,36 @@ def test_exact_values_are_read_and_put_into_the_equations():
         assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES, value
 
 
+def equilibria_under_a_norm(bodies: str) -> tuple[holonom.Scene, dict]:
+    scene = holonom.system(f"""system : holonomic_system({bodies})$
+    rest : holonomic_scene(system, initial_state = [e0 = 1, e1 = 0, e2 = 0, e3 = 0, dot(e1) = 0, dot(e2) = 0,
+      dot(e3) = 0])$""")
+    return scene, json.loads(json.dumps(published(Publication.EQUILIBRIA, scene.equilibria().document())))
+
+
+def test_signs_of_euler_parameters_are_verified():
+    scene, content = equilibria_under_a_norm("""coordinates = [e0, e1, e2, e3], constraints = [e0^2 + e1^2 + e2^2 + e3^2
+      - 1], kinetic_energy = 2*(e0*dot(e1) - e1*dot(e0) + e2*dot(e3) - e3*dot(e2))^2 + 3*(e0*dot(e2) - e2*dot(e0)
+      + e3*dot(e1) - e1*dot(e3))^2 + 4*(e0*dot(e3) - e3*dot(e0) + e1*dot(e2) - e2*dot(e1))^2,
+      potential_energy = (e1 + e0)^2 + 3*(e2 - e1)^2/2 + 3*e3^2""")
+    assert content["reversals"] == [["e0", "e1", "e2", "e3"]]
+    assert (len(content["found"]), content["complete"]) == (4, True)
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    opposite = copy.deepcopy(content)
+    for name in content["reversals"][0]:
+        opposite["found"][1]["coordinates"][name] = -content["found"][0]["coordinates"][name]
+    assert verify_result(scene.description, opposite).verdict is Verdict.DISAGREES
+
+
+def test_points_of_a_sphere_have_no_second_sign():
+    scene, content = equilibria_under_a_norm("""coordinates = [e0, e1, e2, e3],
+      constraints = [e0^2 + e1^2 + e2^2 + e3^2 - 1], potential_energy = e1^2 + 2*e2^2 + 3*e3^2,
+      kinetic_energy = (dot(e0)^2 + dot(e1)^2 + dot(e2)^2 + dot(e3)^2)/2""")
+    assert (content["reversals"], len(content["found"]), content["complete"]) == ([], 8, True)
+    wrong = content | {"reversals": [["e0", "e1", "e2", "e3"]], "found": content["found"][:4], "count": 4}
+    assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES
+
+
 @pytest.mark.parametrize(("place", "stated"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
 def test_a_wrong_stability_disagrees(place, stated):
     """The bead is stable off the axis, and unstable at the lowest and the highest point."""

@@ -386,3 +386,18 @@ def test_exact_values_are_real_in_any_unit():
     """Roots i/10^10 counted as real, and none was given."""
     (found,) = of_particle("potential_energy = x^4/4 + x^2/10^20/2", "x").equilibria()
     assert found.exact == {"x": 0}
+
+
+SWING = """body : rigid_body(2, [1, 2, 3], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(assembly(body, gravity = uniform_gravity([0, -10, 0], body),
+  revolute_joint(marker(body, [-1, 0, 0], [0, 0, 1]), marker(ground, [0, 0, 0], [0, 0, 1]))))$
+s : holonomic_scene(system, initial_state = [e1 = 0, e2 = 0], initial_guess = [x = 1, y = 0, z = 0, e0 = 1, e3 = 0,
+  dot(x) = 0, dot(y) = 0, dot(z) = 0, dot(e0) = 0, dot(e1) = 0, dot(e2) = 0, dot(e3) = 0], time_span = [0, 1])$
+"""
+
+
+def test_both_signs_of_euler_parameters_were_two_equilibria():
+    found = holonom.system(SWING).equilibria()
+    assert found.reversals == (("e0", "e1", "e2", "e3"),)
+    heights = sorted((round(each.coordinates["y"], 9), str(each.stability)) for each in found)
+    assert heights == 2 * [(-1.0, "stable")] + 2 * [(1.0, "unstable")]  # the hinge's axes may be opposite, too
