@@ -35,53 +35,6 @@ class Report:
     """The end of a motion, and its accuracy.
 
     Numbers of the motion are floats in double precision, heyoka's own beyond.
-
-    Attributes
-    ----------
-    multipliers : mapping of str to number
-        Empty where the scene does not observe them.
-    residuals : mapping of str to float
-        ``position``, ``velocity`` and ``acceleration``: how far the final state is from the constraints, as
-        `holonom.simulation.residuals` defines it.
-    energy_error : float
-        Energy gained beyond what the forces and the controls did as work, see `holonom.simulation.energy`.
-    condition : float
-        Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.
-    moved : (str, str) or None
-        The initial value that differs most from the scene's guess, and by how much, or None without a guess.
-    segments : tuple of EngineSegment
-        Engine of each interval of the motion, and the reason for it.
-    code : str
-        How heyoka compiled the Taylor engine in the end (`Code`), empty where it did nothing.
-    digits : int
-        Decimal digits that distinguish its numbers.
-    correction : (str, str) or None
-        The given initial value that was corrected most to fit the constraints, and by how much.
-    cases : tuple of Difficulty
-        Kinds of hard case that the motion is.
-    switchings : tuple of Switching
-        Times at which the motion is not analytic, and how it passed them.
-    violations : tuple of AccuracyViolation
-        Errors that are too large for the tolerance. A motion with any is rejected.
-    ending : Ending or None
-        Whether an event ended the motion, or None where the scene names none.
-    undetermined : tuple of str
-        Outputs that are not unique because constraints are redundant.
-    joints : mapping of str to str
-        Of multipliers the joint or body that they belong to, by its name in the scene file.
-    controls : mapping of str to number
-        Empty where the scene does not observe them.
-    outputs : mapping of str to number
-        What the scene observes under names of its own.
-    choice : Choice or None
-        Why the engine that began was taken, or None where one was requested, or is the only one.
-    relative_degrees : tuple of int
-        Of each output that servo-constraints prescribe: which of its time derivatives the controls are in.
-    sensitivities : mapping of str to float
-        Derivatives at the end, ``d(t, m)`` among them where an event ends the motion: then the others are those of the
-        values at the event, not at a fixed time.
-    unresolved : float or None
-        The first time from which an expression of the time changes too fast to be looked at ahead.
     """
 
     t: Number = entry("The last time.")
@@ -89,11 +42,11 @@ class Report:
     velocities: Mapping[str, Number] = entry("Values of the velocities, by name.")
     multipliers: Mapping[str, Number] = entry("Empty where the scene does not observe them.")
     residuals: Mapping[str, float] = entry(
-        "How far the final state is from the constraints: position, velocity and acceleration.",
+        "position, velocity and acceleration: how far the final state is from the constraints.",
         required=["position", "velocity", "acceleration"],
     )
-    energy_error: Number = entry("Energy gained beyond the work done.")
-    condition: float = entry("Condition number of G = J A^-1 J^T at the end.")
+    energy_error: Number = entry("Energy gained beyond the work of the forces and the controls.")
+    condition: float = entry("Condition number of G = J A^-1 J^T at the end, each constraint scaled to unit length.")
     steps: int = entry("Number of steps.", minimum=0)
     segments: tuple[EngineSegment, ...] = entry("Engine of each interval of the motion, and the reason for it.")
     code: str = entry("How heyoka compiled the Taylor engine; empty where it did nothing.")
@@ -111,7 +64,7 @@ class Report:
         "its zero."
     )
     violations: tuple[AccuracyViolation, ...] = entry(
-        "Quantities whose relative error exceeds what the tolerance allows."
+        "Quantities whose relative error exceeds what the tolerance allows. A motion with any is rejected."
     )
     ending: Ending | None = entry("Whether an event ended the motion; null where the scene names none.", None)
     choice: Choice | None = entry(
@@ -136,7 +89,9 @@ class Report:
         "The first time from which a function of the time changes too often to be looked at ahead, or null.", None
     )
     sensitivities: Mapping[str, Number] = entry(
-        "Derivatives at the end, by name such as d(x, m); d(t, m) where an event ends the motion.", dict
+        "Derivatives at the end, by name such as d(x, m). d(t, m) where an event ends the motion: then the others are "
+        "those of the values at the event, not at a fixed time.",
+        dict,
     )
 
     @property

@@ -10,6 +10,7 @@ from pathlib import Path
 import click
 import pytest
 from sphinx.application import Sphinx
+from sphinx.util.docutils import docutils_namespace
 
 import holonom
 from holonom.cli import holonom as command_line
@@ -24,8 +25,9 @@ ALONE = {"root_doc": "reference/index", "include_patterns": ["reference/*"]}
 def build(folder: Path, builder: str) -> Sphinx:
     """Build the reference alone; a warning of Sphinx is a failure."""
     warnings = io.StringIO()
-    app = Sphinx(SOURCE, SOURCE, folder, folder / "doctrees", builder, dict(ALONE), None, warnings)
-    app.build()
+    with docutils_namespace():
+        app = Sphinx(SOURCE, SOURCE, folder, folder / "doctrees", builder, dict(ALONE), None, warnings)
+        app.build()
     assert warnings.getvalue() == ""
     return app
 
