@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 from .described import Shape, System, Values, each, expression
 from .expression.functions import FUNCTIONS
@@ -85,12 +85,11 @@ class Table:
     ends: Pair | None = entry("Derivatives at both ends; null for the natural spline.")
 
 
-@dataclass(frozen=True)
-class DescribedRelease:
+class DescribedRelease(NamedTuple):
     """Constraints, by their multipliers, released at the first zero of an expression."""
 
-    condition: Expression = entry("Expression at whose first zero crossing the constraints end.")
-    multipliers: tuple[Name, ...] = entry("Multipliers of the released constraints.")
+    condition: Annotated[Expression, "Expression at whose first zero crossing the constraints end."]
+    multipliers: Annotated[tuple[Name, ...], "Multipliers of the released constraints."]
 
 
 @dataclass(frozen=True)

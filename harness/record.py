@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 from .described import Correction, System, Values, expression
 from .documents import ask
@@ -56,13 +56,12 @@ class Equation:
 LARGEST_SIZE = 10**300  # larger predicted sizes are replaced by this
 
 
-@dataclass(frozen=True)
-class LeftOut:
+class LeftOut(NamedTuple):
     """Equations that were left out."""
 
-    numbers: tuple[str, ...] = entry("Equation numbers of these equations.", minItems=1)
-    size: int | None = entry("Terms and operations, as predicted; null where forces contain multipliers.")
-    limit: int = entry("closed_form_size.")
+    numbers: Annotated[tuple[str, ...], "Equation numbers of these equations."]
+    size: Annotated[int | None, "Terms and operations, as predicted; null where forces contain multipliers."]
+    limit: Annotated[int, "closed_form_size."]
 
 
 @dataclass(frozen=True)

@@ -184,9 +184,16 @@ def entries_of(kind: type) -> tuple[Entry, ...]:
         Empty for any other class.
     """
     if hasattr(kind, "_fields"):
-        stated = {name: get_args(annotation) for name, annotation in kind.__annotations__.items()}
-        return tuple(Entry(name, name, inside[0], inside[1]) for name, inside in stated.items() if inside)
+        stated = {name: get_args(each) for name, each in kind.__annotations__.items() if get_origin(each) is Annotated}
+        return tuple(
+            Entry(name, name, _annotated(*inside[:-1]), inside[-1], required=name not in kind._field_defaults)
+            for name, inside in stated.items()
+        )
     return tuple(_field_entries(kind)) if is_dataclass(kind) else ()
+
+
+def _annotated(kind: Any, *rules: Any) -> Any:
+    return Annotated[kind, *rules] if rules else kind
 
 
 def _field_entries(kind: type) -> Iterator[Entry]:

@@ -23,6 +23,7 @@ class Colour(StrEnum):
 
 class Span(NamedTuple):
     first: Annotated[Fraction, "First time."]
+    number: Annotated[Annotated[int, Rules({"minimum": 1})], "Number of times."]
     last: Annotated[Fraction | None, "Last time."] = None
 
 
@@ -68,10 +69,10 @@ class Whole:
         return len(self.parts)
 
 
-WHOLE = Whole(Origin("it"), Span(Fraction(1, 2)), (Part(Colour.RED), Part(None, size=3)), ("x", "y"), {"x": 0.5})
+WHOLE = Whole(Origin("it"), Span(Fraction(1, 2), 3), (Part(Colour.RED), Part(None, size=3)), ("x", "y"), {"x": 0.5})
 DOCUMENT = {
     "title": "it",
-    "span": {"first": "1/2", "last": None},
+    "span": {"first": "1/2", "number": 3, "last": None},
     "parts": [{"colour": "red", "how many": 1}, {"colour": None, "how many": 3}],
     "names": ["x", "y"],
     "values": {"x": 0.5},
@@ -97,7 +98,7 @@ def test_what_is_written_is_what_the_schema_says_and_is_read_again():
 
 def test_an_entry_may_be_left_out_if_it_has_a_default():
     assert set(SCHEMA["required"]) == {"format", "version", "title", "span", "parts", "names", "count"}
-    assert reader_of(Whole)({**DOCUMENT, "span": {"first": "1/2"}}).span == Span(Fraction(1, 2))
+    assert reader_of(Whole)({**DOCUMENT, "span": {"first": "1/2", "number": 3}}).span == Span(Fraction(1, 2), 3)
     assert "note" not in written(WHOLE)
     assert written(replace(WHOLE, origin=Origin("it", "short")))["note"] == "short"
 
@@ -106,8 +107,9 @@ def test_an_entry_may_be_left_out_if_it_has_a_default():
     ("changed", "place"),
     [
         ({"title": None}, "$.title"),
-        ({"span": {"first": "soon", "last": None}}, "$.span.first"),
-        ({"span": {"last": None}}, "$.span"),
+        ({"span": {"first": "soon", "number": 3, "last": None}}, "$.span.first"),
+        ({"span": {"first": "1/2"}}, "$.span"),
+        ({"span": {"first": "1/2", "number": 0, "last": None}}, "$.span.number"),
         ({"parts": []}, "$.parts"),
         ({"parts": [{"colour": "green", "how many": 1}]}, "$.parts[0].colour"),
         ({"parts": [{"colour": "red", "how many": -1}]}, "$.parts[0].how many"),
