@@ -33,6 +33,20 @@ run : holonomic_scene(system, effects = [push], control_law = [u = 1 + table([[0
 """
 
 
+RELEASED = """
+load("holonom.mac")$
+a : particle(1, [x1, y1])$  b : particle(3, [x2, y2])$
+rod : distance_joint(a, b, 4)$
+system : holonomic_system(parameters = [c], assembly(a, b, rod))$
+run : holonomic_scene(system, parameter_values = [c = 1], time_span = [0, 3], released = [rod = t - c],
+  initial_state = [x1 = 3, y1 = 0, x2 = -1, y2 = 0, dot(x1) = 1, dot(y1) = 6, dot(x2) = 1, dot(y2) = -2])$
+"""
+
+
+def test_releases_are_described(write_scene, holonom_here):
+    assert "lambda1 at -c + t = 0" in holonom_here("describe", write_scene(RELEASED)).stdout
+
+
 @pytest.fixture(scope="module")
 def switched(tmp_path_factory) -> Description:
     file = tmp_path_factory.mktemp("switched") / "scene.mac"
