@@ -104,6 +104,10 @@
   "Of  name = value  those whose name the table has."
   (mlist-of (remove-if-not #'(lambda (item) (gethash (second item) table)) (cdr items))))
 
+(defun $assoc_pair (name pairs)
+  "The value of the first [name, value] of that name."
+  (third (car (member-if #'(lambda (pair) (alike1 (second pair) name)) (cdr pairs)))))
+
 (defun $items_failing (test items) (mlist-of (remove-if #'(lambda (item) (mfuncall test item)) (cdr items))))
 
 (defun $repeated_items (items)
