@@ -98,22 +98,6 @@ class MotionSeries(Shown):
             found = replace(found, note=UNPROVED.note) if found == POLYNOMIAL else found
             return decided(found, [numbers(row) for row in self.coordinates.values()], self.program, number(self.t0))
 
-    def up_to(self, order: int) -> "MotionSeries":
-        """Return the series without the powers above a lower order.
-
-        Parameters
-        ----------
-        order : int
-            Highest power of the result, at most that of the series.
-
-        Returns
-        -------
-        MotionSeries
-        """
-        groups = ("coordinates", "multipliers", "constraint_forces", "sensitivities")
-        truncated = {group: {name: row[: order + 1] for name, row in getattr(self, group).items()} for group in groups}
-        return replace(self, order=order, **truncated)
-
     def all_series(self) -> Iterator[tuple[str, NumberTexts]]:
         """Yield name and coefficients of each series.
 
