@@ -28,7 +28,7 @@
       e
       (let ((operator (caar e)))
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
-              ((odd-root-of-size-p e) (power '$%e (mul (third e) (take '(%log) (with-signs (second e))))))
+              ((root-of-size-p e) (power (take '(mabs) (with-signs (second (second e)))) (third e)))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
               ((eq operator '%signum) (sign-of-function (with-signs (second e))))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
@@ -40,9 +40,10 @@
                        e
                        (simplifya (cons (list operator) parts) t))))))))
 
-;; (s g)^(1/3) would become s^(1/3) g^(1/3), in which neither is a real number to a program where g is negative.
-(defun odd-root-of-size-p (e)
-  (and (not *written-openly*) (odd-root-p e) (consp (second e)) (eq (caar (second e)) 'mabs)))
+;; Of s g it would have no value where a step ends behind the zero of g.
+(defun root-of-size-p (e)
+  (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))) (consp (second e))
+       (eq (caar (second e)) 'mabs)))
 
 ;; To Maxima it is the real root, of g < 0 as well: signum(g) |g|^(p/q) if p is odd, |g|^(p/q) if p is even.
 (defun odd-root-p (e)

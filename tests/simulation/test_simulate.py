@@ -466,6 +466,28 @@ motion : holonomic_scene(system, initial_state = [x = -1, dot(x) = 0], time_span
     assert found.report.trusted
 
 
+@pytest.mark.usefixtures("c_compiler")
+@pytest.mark.parametrize("engine", ["auto", "robust", "runge-kutta"])
+@pytest.mark.parametrize(
+    ("force", "work"),
+    [
+        ("sqrt(abs(x))", lambda x: 2 / 3 * np.sign(x) * abs(x) ** 1.5),
+        ("-sqrt(abs(x))*signum(x)", lambda x: -2 / 3 * abs(x) ** 1.5),
+        ("abs(x)^(1/3)", lambda x: 3 / 4 * np.sign(x) * abs(x) ** (4 / 3)),
+    ],
+)
+def test_simulate_passes_the_zero_of_a_root_of_a_size(force, work, engine):
+    """It ended there, "where numbers overflow": sqrt(-x) has no value behind it. Truth: v^2/2 is the work."""
+    found = holonom.system(f"""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+motion : holonomic_scene(system, initial_state = [x = -1, dot(x) = 1/10], time_span = [0, 2])$""").simulate(
+        samples=5, engine=engine
+    )
+    x = found["x"]
+    assert x[-1] > 0.5
+    assert found["dot(x)"] ** 2 / 2 == pytest.approx(1 / 200 + work(x) - work(-1.0), abs=1e-8)
+
+
 def test_parameter_without_use_is_a_warning_once():
     """A term that was commented out: x = a t^2/2."""
     scene = holonom.system("""
