@@ -474,7 +474,9 @@ class _Search:
                 if not left.size:
                     break
         for place in np.flatnonzero(solved):
-            yield self._zeroed(q[:, place]), multipliers[:, place]
+            zero = np.zeros_like(multipliers[:, place])
+            loaded = np.any(self._at(q[:, place], zero)["equation"])  # otherwise rounding errors alone are left
+            yield self._zeroed(q[:, place]), multipliers[:, place] if loaded else zero
 
     def _balancing(self, q: Matrix) -> Matrix:
         """Return multipliers for k points, shape (g, k).

@@ -401,3 +401,16 @@ def test_both_signs_of_euler_parameters_were_two_equilibria():
     assert found.reversals == (("e0", "e1", "e2", "e3"),)
     heights = sorted((round(each.coordinates["y"], 9), str(each.stability)) for each in found)
     assert heights == 2 * [(-1.0, "stable")] + 2 * [(1.0, "unstable")]  # the hinge's axes may be opposite, too
+
+
+@pytest.mark.parametrize(("mass", "length"), [("1", "1"), ("10^30", "10^9")])
+def test_a_mechanism_without_forces_rests_anywhere_and_is_not_stable(mass, length):
+    """It was called stable by the sign of a multiplier's rounding error."""
+    scene = holonom.system(f"""l : {length}$
+system : holonomic_system(coordinates = [a, b, x], parameters = [m], constraints = [l*cos(a) + l*cos(b) - x,
+  l*sin(a) + l*sin(b)], kinetic_energy = m*l^2*(dot(a)^2 + dot(b)^2)/2 + m*dot(x)^2/2)$
+s : holonomic_scene(system, parameter_values = [m = {mass}], initial_state = [a = 1, dot(a) = 2],
+  initial_guess = [b = -1, x = l, dot(b) = -2, dot(x) = 0], time_span = [0, 1])$""")
+    found = scene.equilibria()
+    assert {(each.stability, each.isolated) for each in found} == {(Stability.UNDECIDED, False)}
+    assert all(set(each.multipliers.values()) == {0.0} for each in found)
