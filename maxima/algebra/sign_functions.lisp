@@ -28,7 +28,7 @@
       e
       (let ((operator (caar e)))
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
-              ((root-of-size-p e) (power (take '(mabs) (with-signs (second (second e)))) (third e)))
+              ((root-of-size-p e) (power (size-with-sign-met (with-signs (second (second e)))) (third e)))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
               ((eq operator '%signum) (sign-of-function (with-signs (second e))))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
@@ -40,7 +40,8 @@
                        e
                        (simplifya (cons (list operator) parts) t))))))))
 
-;; Of s g it would have no value where a step ends behind the zero of g.
+;; A root of s g would have no value where a step ends behind the zero of g.
+(defun size-with-sign-met (g) (sign-of-function g) (take '(mabs) g))
 (defun root-of-size-p (e)
   (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))) (consp (second e))
        (eq (caar (second e)) 'mabs)))
