@@ -107,7 +107,7 @@ class VariationalEquations:
         t : float
             The time.
         units : ndarray, shape (p,)
-            Unit of each column of X, beside that of each row.
+            Unit of each column of X, in terms of that of each row.
 
         Returns
         -------

@@ -26,9 +26,18 @@ class Equivalence(NamedTuple):
     reversals: Sequence[Sequence[int]]
 
     def chosen(self, q: Vector) -> Vector:
-        """Return the coordinates of the same state that are chosen for all, shape (n,).
+        """Return the coordinates that are chosen for a state.
 
         Angles are in (-pi, pi]. The first Euler parameter that is not zero is positive.
+
+        Parameters
+        ----------
+        q : ndarray, shape (n,)
+            Coordinates of the state.
+
+        Returns
+        -------
+        ndarray, shape (n,)
         """
         q = q.copy()
         q[self.turns] -= TURN * np.ceil(q[self.turns] / TURN - HALF)
@@ -38,7 +47,17 @@ class Equivalence(NamedTuple):
         return q
 
     def apart(self, one: Vector, other: Vector) -> Vector:
-        """Return the least differences of two states' coordinates, shape (n,)."""
+        """Return the least differences of two states' coordinates.
+
+        Parameters
+        ----------
+        one, other : ndarray, shape (n,)
+            Coordinates of the states.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+        """
         apart = one - other
         apart[self.turns] -= TURN * np.round(apart[self.turns] / TURN)
         for places in map(list, self.reversals):

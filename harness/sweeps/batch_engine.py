@@ -61,7 +61,7 @@ class BatchResult(NamedTuple):
 class _Recorded(NamedTuple):
     """Numbers recorded of a batch of m motions after each step."""
 
-    series: Floats  # shape (steps, quantities, powers, m): Taylor coefficients of the rates, in `SMALL`
+    series: Floats  # shape (steps, quantities, powers, m): Taylor coefficients of time derivatives, in `SMALL`
     length: Floats  # shape (steps, m): of the steps
     time: Floats  # shape (steps, m): at their ends
 
