@@ -60,9 +60,8 @@ class Derivations:
         """Return the motion with open parameters set, or None if numbers are needed."""
         known = self._opened.setdefault((request.scene, request.solve, names), [])
         for settings, problem in known:
-            if all(
-                settings.get(name) == request.settings.get(name) for name in names if name not in problem.parameters
-            ):
+            fixed = [name for name in names if not (name in problem.parameters and name in request.settings)]
+            if all(settings.get(name) == request.settings.get(name) for name in fixed):
                 return _moved(problem, request.settings)
         problem = motion_problem(self._source, request, self._source.limits, DOUBLE_DIGITS, names)
         known.append((request.settings, problem))

@@ -407,3 +407,11 @@ def test_derivatives_in_other_units(units):
         return np.concatenate([angles, [found["d(x, l)"], found["d(dot(y), g)"] / time]])
 
     assert moved(*units) == pytest.approx(moved("1", "1", "1"), rel=1e-9, abs=1e-9)
+
+
+def test_values_of_an_earlier_motion_were_taken():
+    scene = holonom.system(SPRING)
+    scene.simulate(samples=2, m=9, k=3)
+    fresh = holonom.system(SPRING).simulate(samples=2, m=3, sensitivities=["k"])
+    again = scene.simulate(samples=2, m=3, sensitivities=["k"])
+    assert [again[name].tolist() for name in ("x", "d(x, k)")] == [fresh[name].tolist() for name in ("x", "d(x, k)")]
