@@ -122,6 +122,15 @@ class _ModeVariation:
 
         self._compile_if_worthwhile(steps * left / (end - start))
         there = sizes * reached, rows * units * grown.reshape(moves.shape)
+        if self.variation.defect(end, *there) > DISTANCE:
+            raise HolonomError(
+                ErrorKind.NO_SENSITIVITY,
+                detail=translatable(
+                    "they leave the constraints before t = %(time)s, where those that the equations are solved with "
+                    "become dependent",
+                    time=f"{end:.10g}",
+                ),
+            )
         return [_Segment(start, end, self, derivatives)], there[0], self.variation.corrected(end, *there)
 
     def rates(self, t: float, state: Numbers) -> Numbers:

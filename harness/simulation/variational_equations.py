@@ -19,6 +19,7 @@ from ..program.heyoka_function import heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Name, Program
 from ..program.rewriting import computing
+from .constraints.directions import or_one
 from .constraints.factorization import factored_constraints
 from .constraints.stabilization import Equations
 from .engines.scaled_time import in_unit
@@ -135,6 +136,31 @@ class VariationalEquations:
         """
         ratio = GROWTH * np.max(np.abs(moves), axis=0) / largest(state)
         return 2.0 ** np.ceil(np.log2(np.maximum(ratio, self._least)))
+
+    def defect(self, t: float, state: Numbers, moves: Numbers) -> float:
+        """Return how far X is from the constraints' derivatives, relative to their terms.
+
+        Redundant constraints are among them: X leaves these where others that the program solves become dependent.
+
+        Parameters
+        ----------
+        t : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
+        moves : ndarray, shape (2n, p)
+            X.
+
+        Returns
+        -------
+        float
+        """
+        if not self.problem.multipliers:
+            return 0.0
+        jacobian, sizes = np.abs(self._matrices(t, state).jacobian), self.units.state[:, None]
+        moving = np.split(sizes * np.max(np.abs(moves) / sizes, axis=0), 2)  # if all values move as far as one does
+        missed = np.abs(self.constraints(t, state, moves))
+        return float(np.max(missed / or_one(jacobian @ np.array(moving) + missed), initial=0.0))
 
     def corrected(self, t: float, state: Numbers, moves: Numbers) -> Numbers:
         """Return the nearest derivatives in the mass metric that satisfy the constraints.

@@ -107,6 +107,12 @@ system : holonomic_system(coordinates = [x, a, b], parameters = [m, r], potentia
 scene : holonomic_scene(system, parameter_values = [m = 1, r = 1/2], time_span = [0, 1],
   initial_state = [x = 0, b = 0, dot(x) = 0], initial_guess = [a = 0])$
 """
+REDUNDANT = """
+system : holonomic_system(coordinates = [x, y, a], parameters = [m], kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2
+    + dot(a)^2/4, potential_energy = 10*m*y, constraints = [x^2 + y^2 - 1, x - cos(a), y - sin(a)])$
+scene : holonomic_scene(system, parameter_values = [m = 1], initial_state = [a = 1/2, dot(a) = 0],
+  initial_guess = [x = 9/10, y = 1/2, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$
+"""
 
 
 def circle(start: str) -> holonom.Scene:
@@ -415,3 +421,15 @@ def test_values_of_an_earlier_motion_were_taken():
     fresh = holonom.system(SPRING).simulate(samples=2, m=3, sensitivities=["k"])
     again = scene.simulate(samples=2, m=3, sensitivities=["k"])
     assert [again[name].tolist() for name in ("x", "d(x, k)")] == [fresh[name].tolist() for name in ("x", "d(x, k)")]
+
+
+def test_derivatives_were_wrong_where_the_constraints_that_are_solved_become_dependent():
+    """At y = 0 the gradients of x^2 + y^2 - 1 and x - cos(a) are, and the motion is regular."""
+    scene = holonom.system(REDUNDANT)
+    step, before = 1e-3, {"until": 0.35, "samples": 2}
+    beside = [scene.simulate(m=1 + k * step, **before)["a"][-1] for k in (-2, -1, 1, 2)]
+    slope = np.dot(beside, [1, -8, 8, -1]) / (12 * step)
+    assert scene.simulate(**before, sensitivities=["m"])["d(a, m)"][-1] == pytest.approx(slope, rel=1e-8)
+    with pytest.raises(HolonomError) as caught:
+        scene.simulate(sensitivities=["m"])
+    assert caught.value.kind is ErrorKind.NO_SENSITIVITY

@@ -117,7 +117,9 @@ def seen(motion: MotionProblem, engine: EngineName, units: Units) -> Seen:
 
 
 def reaction_size(motion: MotionProblem) -> float:
-    """The largest multiplier whose work along the nominal sizes is that of the forces at the start."""
+    """The multiplier whose work along nominal sizes is that of the forces at the start; 0 where signs are open."""
+    if motion.signs:
+        return 0.0
     matrices = MotionMatrices(motion)
     here, sizes = matrices(*start_of(motion)), matrices.nominal.coordinates
     ways = np.max(np.abs(here.jacobian) * sizes, axis=1)
