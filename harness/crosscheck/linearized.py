@@ -31,6 +31,8 @@ from .system import described_system, dotted, exact, gradient
 from .taylor import Taylor
 
 DIGITS = 7  # of results in double precision, in which they have to agree
+SHAKEN, SHAKES = 1e-14, 4  # relative changes of values, whose effect is that of rounding errors, and their number
+LARGER = 100  # rounding errors, in terms of that effect
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 EXACT_DIGITS = 60  # in which exact values are put into the equations
 SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
@@ -295,9 +297,9 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     yield from _conditions_on_point(equations, content)
     here = equations.at(point)
     N, mass = np.array(content["basis"]).reshape(len(q), -1), here["mass"]
-    columns = {name: np.hstack([content[name[0]], *_parts(content, name[1])]) for name in ("AB", "CD")}
-    rates, rows = columns["AB"], columns["CD"]
-    n, m, width = len(q), N.shape[1], rows.shape[1]
+    n, m = N.shape
+    rates, rows = (np.hstack([_matrix(content[a], 2 * m), *_parts(content, b)]) for a, b in ("AB", "CD"))
+    width = rows.shape[1]
     yield Condition("number of states", rates.shape != (2 * m, width) or len(rows) != len(outputs))
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
@@ -328,9 +330,12 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
         yield Condition(
             f"derivatives of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given)
         )
-    own, size = _deviation(here, "output", known | {"a": accelerations})
+    known |= {"a": accelerations}
+    own, size = _deviation(here, "output", known)
+    _, rounding = _deviation(_rounding_errors(equations, point, here), "output", known)
     given = rows[2 * n + len(solved) :]
-    yield Condition("outputs of the scene in C and D", own - given, size + np.abs(given))
+    size = size + np.abs(given) + rounding / 10.0**-DIGITS  # terms that cancel leave rounding errors
+    yield Condition("outputs of the scene in C and D", own - given, size)
 
 
 def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
@@ -361,7 +366,7 @@ def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, An
 
 
 def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) -> Iterator[Condition]:
-    A, m = np.array(content["A"]).reshape(2 * N.shape[1], -1), N.shape[1]
+    A, m = _matrix(content["A"], 2 * N.shape[1]), N.shape[1]
     values, modes = (_complex(content[name]) for name in ("eigenvalues", "modes"))
     yield Condition("number of eigenvalues", len(values) != 2 * m or modes.shape != (len(N), 2 * m))
     size = np.linalg.norm(A, 2) if m else 1.0
@@ -382,7 +387,7 @@ def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) ->
 
 
 def _conditions_on_ranks(content: Mapping[str, Any]) -> Iterator[Condition]:
-    A, C = np.array(content["A"]), np.array(content["C"])
+    A, C = (_matrix(content[name], len(content["A"])) for name in "AC")
     b_u, b_du, b_ddu = _parts(content, "B")
     for name, matrix, entering in (
         ("controllable", A, b_u + A @ (b_du + A @ b_ddu)),
@@ -410,18 +415,32 @@ def _reached(A: Matrix, B: Matrix) -> int:
 
 
 def _parts(content: Mapping[str, Any], name: str) -> list[Matrix]:
-    return [np.array(content[name][rate]).reshape(len(content[name][rate]), -1) for rate in ("u", "du", "ddu")]
+    return [_matrix(content[name][rate], len(content["controls"])) for rate in ("u", "du", "ddu")]
+
+
+def _matrix(rows: Sequence[Sequence[float]], columns: int) -> Matrix:
+    return np.array(rows, dtype=float).reshape(len(rows), columns)
 
 
 def _complex(pairs: Any) -> Matrix:
     numbers = np.array(pairs, dtype=float)
-    return numbers[..., 0] + 1j * numbers[..., 1] if numbers.size else np.zeros(numbers.shape[:-1])
+    return numbers[..., 0] + 1j * numbers[..., 1] if numbers.size else np.zeros(numbers.shape)
 
 
 def _deviation(here: Mapping[str, Matrix], row: str, known: Mapping[str, Matrix]) -> tuple[Matrix, Matrix]:
     """Return the deviation of expressions, with the sizes of terms."""
     terms = [(here[f"{row}_by_{group}"], each) for group, each in known.items()]
     return sum(a @ b for a, b in terms), sum(_product_sizes(a, b) for a, b in terms)
+
+
+def _rounding_errors(
+    equations: DescribedEquations, point: Mapping[str, float], here: Mapping[str, Matrix]
+) -> Mapping[str, Matrix]:
+    """Return bounds of rounding errors in matrices, by their changes with the last digits of values."""
+    random = np.random.default_rng(0)
+    changes = SHAKEN * random.uniform(-1.0, 1.0, size=(SHAKES, len(point)))
+    beside = [equations.at({k: x + x * by for (k, x), by in zip(point.items(), row, strict=True)}) for row in changes]
+    return {name: LARGER * np.max([np.abs(each[name] - here[name]) for each in beside], axis=0) for name in here}
 
 
 def _product_sizes(a: Matrix, b: Matrix) -> Matrix:

@@ -214,6 +214,38 @@ def test_points_of_a_sphere_have_no_second_sign():
     assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES
 
 
+BEAM = """beam : planar_body(20, 5, [x, y], phi)$  rope : distance_joint(marker(beam, [-3/5, 1/4]), [0, 0], 21/10)$
+system : holonomic_system(assembly(beam, rope, gravity = uniform_gravity(981/100, beam)))$
+hanging : holonomic_scene(system, initial_state = [phi = 1/10, dot(phi) = 1/5, x = 7/5, dot(x) = 1/3],
+  initial_guess = [y = -2, dot(y) = 0], time_span = [0, 1], observe = [moment = reaction(rope)[3]])$
+"""
+DRIVEN = """system : holonomic_system(coordinates = [x], controls = [u], constraints = [x - u],
+  kinetic_energy = dot(x)^2/2)$
+driven : holonomic_scene(system, control_law = [u = t^2], initial_state = [], time_span = [0, 1])$
+"""
+
+
+def linearized_later(text: str) -> tuple[holonom.Scene, dict]:
+    scene = holonom.system(text)
+    return scene, json.loads(json.dumps(published(Publication.LINEARIZED, scene.linearize(at="1/2").document())))
+
+
+def test_an_output_whose_terms_cancel_disagreed():
+    scene, content = linearized_later(BEAM)
+    assert content["outputs"][-1] == "moment"
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    content["C"][-1][0] += 1e-4
+    assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
+
+
+def test_a_system_without_a_degree_of_freedom_ended_in_an_internal_error():
+    scene, content = linearized_later(DRIVEN)
+    assert (content["A"], content["eigenvalues"]) == ([], [])
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    content["D"]["u"][0][0] += 1e-3
+    assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
+
+
 @pytest.mark.parametrize(("place", "stated"), [(0, "asymptotically stable"), (0, "unstable"), (1, "stable")])
 def test_a_wrong_stability_disagrees(place, stated):
     """The bead is stable off the axis, and unstable at the lowest and the highest point."""
