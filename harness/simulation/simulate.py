@@ -111,11 +111,25 @@ def integrate(
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)
+        _require_derivatives(problem, request)
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(parametrized_problem(problem, request), request, take, end, ending)
         with doing("integrating the motion"), closing(prepared.motion):
             return prepared.run(progress, watch)
+
+
+def _require_derivatives(problem: MotionProblem, request: SimulationRequest) -> None:
+    """Reject sensitivities in other precisions, and by parameters that are constants of the integration."""
+    if not request.sensitivities:
+        return
+    if read_precision(str(request.precision)).name != "double":
+        detail = translatable("they are integrated in double precision alone")
+        raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
+    constants = set(problem.parameters) - set(parametrized_problem(problem, request).parameters)
+    if constants & set(request.sensitivities):
+        detail = translatable("this engine, or this stabilization, integrates with constant parameters")
+        raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
 
 
 def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:

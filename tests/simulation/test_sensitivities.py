@@ -433,3 +433,16 @@ def test_derivatives_were_wrong_where_the_constraints_that_are_solved_become_dep
     with pytest.raises(HolonomError) as caught:
         scene.simulate(sensitivities=["m"])
     assert caught.value.kind is ErrorKind.NO_SENSITIVITY
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"precision": "quadruple"}, {"precision": 30}, {"engine": "runge-kutta"}, {"stabilization": "ggl"}],
+    ids=lambda options: next(iter(options)),
+)
+def test_a_known_parameter_was_called_unknown(options):
+    scene = holonom.system(BEAD)
+    with pytest.raises(HolonomError) as caught:
+        scene.simulate(sensitivities=["m"], **options)
+    assert caught.value.kind is ErrorKind.NO_SENSITIVITY
+    assert "unknown" not in caught.value.message()
