@@ -278,6 +278,18 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
     radius = motion.radius
     if radius.estimate is None or distance < radius.estimate - radius.uncertainty:
         return
+    if distance < radius.estimate:
+        raise HolonomError(
+            ErrorKind.BEYOND_RADIUS,
+            detail=translatable(
+                "whether the series about t = %(start)s converges at t = %(time)s is not known: "
+                "its radius of convergence is %(radius)s, %(evidence)s; a higher order determines it more closely",
+                start=motion.t0,
+                time=f"{float(time):g}",
+                radius=f"{radius.estimate:.6g}",
+                evidence=described(radius),
+            ),
+        )
     nearest = ", ".join(f"{float(number(motion.t0)) + z.real:.6g}{z.imag:+.6g}i" for z in radius.singularities)
     at_nearest = translatable("its nearest singularities are at %(nearest)s", nearest=nearest)
     reason = at_nearest if nearest else radius.note

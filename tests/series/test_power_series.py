@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -178,6 +179,15 @@ def test_truncation_error_covers_the_error():
 def test_values_beyond_the_radius_are_refused_with_the_reason():
     with failing(ErrorKind.BEYOND_RADIUS, "t = 2", "0.768115"):
         values_at(series(PAPER, 40), Fraction(2))
+
+
+def test_a_time_within_the_uncertainty_of_the_radius_was_beyond_it():
+    motion = series(PAPER, 40)
+    uncertain = replace(motion)
+    vars(uncertain)["radius"] = replace(motion.radius, uncertainty=0.5)
+    with failing(ErrorKind.BEYOND_RADIUS, "whether", "t = 0.5", "0.768115", "higher order"):
+        values_at(uncertain, Fraction(1, 2))
+    assert values_at(motion, Fraction(1, 2)).truncation_error < 1e-5
 
 
 def test_values_are_refused_where_the_radius_is_unknown_and_the_terms_grow():
