@@ -269,7 +269,7 @@ class ErrorKind(Enum):
         "the motion is not analytic where {detail} changes its sign",
         "use `holonom simulate`, which locates sign changes",
     )
-    NO_LAW = ("a control has no law", "give every control a control_law")
+    NO_LAW = ("a control has no control_law, as where servo_constraints find it", "give every control a control_law")
     NEVER_AT_REST = (
         "equilibria need equations of motion that do not contain the time",
         "choose effects and constraints without it",
