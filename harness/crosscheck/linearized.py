@@ -436,7 +436,10 @@ def _deviation(here: Mapping[str, Matrix], row: str, known: Mapping[str, Matrix]
 def _rounding_errors(
     equations: DescribedEquations, point: Mapping[str, float], here: Mapping[str, Matrix]
 ) -> Mapping[str, Matrix]:
-    """Return bounds of rounding errors in matrices, by their changes with the last digits of values."""
+    """Return bounds of the rounding errors in matrices.
+
+    They follow from their changes with the last digits of values.
+    """
     random = np.random.default_rng(0)
     changes = SHAKEN * random.uniform(-1.0, 1.0, size=(SHAKES, len(point)))
     beside = [equations.at({k: x + x * by for (k, x), by in zip(point.items(), row, strict=True)}) for row in changes]

@@ -120,7 +120,10 @@ def integrate(
 
 
 def _require_derivatives(problem: MotionProblem, request: SimulationRequest) -> None:
-    """Reject sensitivities in other precisions, and by parameters that are constants of the integration."""
+    """Reject sensitivities that the request excludes.
+
+    They are those in other precisions, and by parameters that are constants of the integration.
+    """
     if not request.sensitivities:
         return
     if read_precision(str(request.precision)).name != "double":

@@ -138,9 +138,10 @@ class VariationalEquations:
         return 2.0 ** np.ceil(np.log2(np.maximum(ratio, self._least)))
 
     def defect(self, t: float, state: Numbers, moves: Numbers) -> float:
-        """Return how far X is from the constraints' derivatives, relative to their terms.
+        """Return the relative defect of X in the constraints' derivatives.
 
-        Redundant constraints are among them: X leaves these where others that the program solves become dependent.
+        It is relative to their terms. Redundant constraints are among them: X leaves these where others that the
+        program solves become dependent.
 
         Parameters
         ----------
