@@ -340,7 +340,8 @@
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
 ;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
 ;;; measured by the largest coefficients of orders around, and smaller by the digits added at least; or where both are
-;;; as small as an error of the initial state, which no digits of the arithmetic lessen. Coefficients of
+;;; as small, beside the largest of all orders before, as an error of the initial state, which no digits of the
+;;; arithmetic lessen. Coefficients of
 ;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits decide.
 
 (defvar *few-digits* 5)
@@ -386,10 +387,13 @@
                   (setq of-coarse (larger of-coarse (- (binary-magnitude (car pair)) size))
                         of-fine (larger of-fine (- (binary-magnitude (cdr pair)) size)))))
             row sizes))
-    (flet ((level (of-zeros size)
-             (let ((share (larger of-start (if of-zeros (min (+ of-zeros few) most)))))
-               (if share (+ share size)))))
-      (mapcar #'(lambda (size) (cons (level of-coarse size) (level of-fine size))) sizes))))
+    (flet ((level (of-zeros size largest)
+             (larger (if of-start (+ of-start largest)) (if of-zeros (+ size (min (+ of-zeros few) most))))))
+      (mapcar #'(lambda (size largest) (cons (level of-coarse size largest) (level of-fine size largest)))
+              sizes (largest-so-far sizes)))))
+
+(defun largest-so-far (sizes)
+  (let ((largest nil)) (mapcar #'(lambda (size) (setq largest (larger largest size))) sizes)))
 
 (defun larger (x y) (if (and x y) (max x y) (or x y)))
 
