@@ -340,9 +340,9 @@
 ;;; falls by as many digits as were added, but for a few, is none. The coarser expansion may have come
 ;;; out smaller by luck, or as zero; then there is none where both are as small as what is left of others,
 ;;; measured by the largest coefficients of orders around, and smaller by the digits added at least; or where both are
-;;; as small, beside the largest of all orders before, as an error of the initial state, which no digits of the
-;;; arithmetic lessen. Coefficients of
-;;; an entire motion, too, fall below what rounding leaves: where a series fades, only more digits decide.
+;;; as small, relative to the largest of all orders before, as an error of the initial state, which no digits of the
+;;; arithmetic lessen. Coefficients of an entire motion, too, fall below what rounding leaves: where a series fades,
+;;; only more digits decide.
 
 (defvar *few-digits* 5)
 
