@@ -274,26 +274,18 @@ class _Search:
         """
         states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
         multipliers = random.normal(size=len(self._equations.multipliers))
-        ones = np.ones(self._n)
-        steps = np.diag(TURN * np.ceil(np.maximum(1.0, self._sizes / TURN)))
-        turns = [k for k, step in enumerate(steps) if self._unchanged(states, multipliers, ones, step)]
-        reversals = [
-            places
-            for places in self._normalised(states, multipliers)
-            if self._unchanged(states, multipliers, np.where(np.isin(np.arange(self._n), places), -1.0, 1.0), 0 * ones)
-        ]
-        return Equivalence(turns, reversals)
+        found = [(q, self._at(q, multipliers)) for q in states]
+        ones, zeros, places = np.ones(self._n), np.zeros(self._n), np.arange(self._n)
 
-    def _unchanged(self, states: Sequence[Vector], multipliers: Vector, signs: Vector, step: Vector) -> bool:
-        """Return True if changed signs or turns leave the equations equivalent."""
-        for q in states:
-            changed = signs * q + step
-            one, other = (self._at(state, multipliers) for state in (q, changed))
-            for name, factor in (("equation", signs), ("constraint", 1.0)):
-                rounding = ROUNDING * np.abs(other[f"{name}_by_q"]) @ np.abs(changed)
-                if np.any(np.abs(one[name] - factor * other[name]) > UNCHANGED * np.abs(one[name]) + rounding):
-                    return False
-        return True
+        def unchanged(signs: Vector, step: Vector) -> bool:
+            return all(
+                _equivalent(here, self._at(signs * q + step, multipliers), signs, signs * q + step) for q, here in found
+            )
+
+        steps = np.diag(TURN * np.ceil(np.maximum(1.0, self._sizes / TURN)))
+        turns = [k for k, step in enumerate(steps) if unchanged(ones, step)]
+        normalised = self._normalised(states, multipliers)
+        return Equivalence(turns, [e for e in normalised if unchanged(np.where(np.isin(places, e), -1.0, 1.0), zeros)])
 
     def _normalised(self, states: Sequence[Vector], multipliers: Vector) -> list[list[int]]:
         """Return the places of Euler parameters.
@@ -570,6 +562,15 @@ class _Solution(NamedTuple):
         apart = np.max(np.abs(self._principal - other._principal), initial=0.0)
         alike = _same(self.multipliers, other.multipliers) and apart <= SAME * max(self.bound, other.bound)
         return bool(alike and not self.isolated and not other.isolated)
+
+
+def _equivalent(here: Mapping[str, Matrix], there: Mapping[str, Matrix], signs: Vector, q: Vector) -> bool:
+    """Return True if equations are those at the coordinates q, but for signs."""
+    for name, factor in (("equation", signs), ("constraint", 1.0)):
+        rounding = ROUNDING * np.abs(there[f"{name}_by_q"]) @ np.abs(q)
+        if np.any(np.abs(here[name] - factor * there[name]) > UNCHANGED * np.abs(here[name]) + rounding):
+            return False
+    return True
 
 
 def _vanishes(matrix: Matrix, vector: Vector) -> bool:

@@ -1,6 +1,5 @@
 """Coordinates of one state: whole turns of angles, signs of Euler parameters."""
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,14 +15,14 @@ class Equivalence(NamedTuple):
 
     Attributes
     ----------
-    turns : sequence of int
+    turns : list of int
         Indices of angles.
-    reversals : sequence of sequence of int
+    reversals : list of list of int
         Indices of the Euler parameters of each body: e and -e are the same orientation.
     """
 
-    turns: Sequence[int]
-    reversals: Sequence[Sequence[int]]
+    turns: list[int]
+    reversals: list[list[int]]
 
     def chosen(self, q: Vector) -> Vector:
         """Return the coordinates that are chosen for a state.
@@ -41,7 +40,7 @@ class Equivalence(NamedTuple):
         """
         q = q.copy()
         q[self.turns] -= TURN * np.ceil(q[self.turns] / TURN - HALF)
-        for places in map(list, self.reversals):
+        for places in self.reversals:
             if q[places][np.flatnonzero(q[places])[:1]].sum() < 0:
                 q[places] *= -1
         return q
@@ -60,7 +59,7 @@ class Equivalence(NamedTuple):
         """
         apart = one - other
         apart[self.turns] -= TURN * np.round(apart[self.turns] / TURN)
-        for places in map(list, self.reversals):
+        for places in self.reversals:
             if one[places] @ other[places] < 0:
                 apart[places] = one[places] + other[places]
         return apart
