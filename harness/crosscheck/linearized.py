@@ -330,12 +330,13 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
         yield Condition(
             f"derivatives of {name} in A and B", both[0] @ first + both[1] @ second - given, size + np.abs(given)
         )
-    known |= {"a": accelerations}
-    own, size = _deviation(here, "output", known)
-    _, rounding = _deviation(_rounding_errors(equations, point, here), "output", known)
-    given = rows[2 * n + len(solved) :]
-    size = size + np.abs(given) + rounding / 10.0**-DIGITS  # terms that cancel leave rounding errors
-    yield Condition("outputs of the scene in C and D", own - given, size)
+    if equations.outputs:
+        known |= {"a": accelerations}
+        own, size = _deviation(here, "output", known)
+        _, rounding = _deviation(_rounding_errors(equations, point, here), "output", known)
+        given = rows[2 * n + len(solved) :]
+        size = size + np.abs(given) + 10.0**DIGITS * rounding  # terms that cancel leave rounding errors
+        yield Condition("outputs of the scene in C and D", own - given, size)
 
 
 def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:

@@ -111,15 +111,16 @@ def integrate(
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)
-        _require_derivatives(problem, request)
+        parametrized = parametrized_problem(problem, request)
+        _require_derivatives(problem, parametrized, request)
         end, ending = end_of(problem, request)
         with doing("compiling the motion"):
-            prepared = _Simulation(parametrized_problem(problem, request), request, take, end, ending)
+            prepared = _Simulation(parametrized, request, take, end, ending)
         with doing("integrating the motion"), closing(prepared.motion):
             return prepared.run(progress, watch)
 
 
-def _require_derivatives(problem: MotionProblem, request: SimulationRequest) -> None:
+def _require_derivatives(problem: MotionProblem, parametrized: MotionProblem, request: SimulationRequest) -> None:
     """Reject sensitivities that the request excludes.
 
     They are those in other precisions, and by parameters that are constants of the integration.
@@ -129,7 +130,7 @@ def _require_derivatives(problem: MotionProblem, request: SimulationRequest) -> 
     if read_precision(str(request.precision)).name != "double":
         detail = translatable("they are integrated in double precision alone")
         raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
-    constants = set(problem.parameters) - set(parametrized_problem(problem, request).parameters)
+    constants = set(problem.parameters) - set(parametrized.parameters)
     if constants & set(request.sensitivities):
         detail = translatable("this engine, or this stabilization, integrates with constant parameters")
         raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
