@@ -100,7 +100,7 @@ class DescribedScene:
     """
 
     name: Name = entry("The name it is assigned to.")
-    title: str = entry("What it is.")
+    title: str = entry("Title.")
     effects: tuple[Name, ...] = entry("Names of the effects it calls for, in the order of the system's.")
     control_law: Expressions = entry("Controls as functions of the time. A law may be switched, and may hold tables.")
     prescribed_reactions: Expressions = entry("Multipliers as functions of the time, in place of controls.")
@@ -112,11 +112,11 @@ class DescribedScene:
     initial_guess: Expressions = entry("Coordinates and velocities near which the others are looked for.")
     span_trees: Pair | None = entry("First and last time.", key="time_span")
     until_trees: tuple[Expression, ...] = entry("Expressions whose zeros end the motion.", key="until")
-    observe: tuple[Name, ...] = entry("What to compute.")
+    observe: tuple[Name, ...] = entry("Observed quantities.")
     nominal: Expressions = entry("Sizes of coordinates, velocities and the time t.", NoValues)
     outputs: OutputExpressions = entry(
-        "What to compute under names of its own, of t, the state, accelerations, controls, multipliers and energy; "
-        "name[k] is the k-th component of a list.",
+        "Observed quantities with names of their own: expressions of t, the state, accelerations, controls, "
+        "multipliers and energy; name[k] is the k-th component of a list.",
         NoValues,
     )
     released: tuple[DescribedRelease, ...] = entry("Constraints that end.", ())
@@ -163,7 +163,7 @@ class DescribedSystem:
     """A system as its file states it."""
 
     name: Name | None = entry("The name it is assigned to; null where it is described within its scenes.")
-    title: str = entry("What it is.")
+    title: str = entry("Title.")
     source: str | None = entry("Where it is published.")
     coordinates: tuple[Name, ...] = entry("q, at least one.", minItems=1)
     controls: tuple[Name, ...] = entry("u.")
@@ -189,7 +189,7 @@ class DescriptionDocument:
     settings: Expressions = entry(
         "Numbers that the file was run with; those of parameters are among the parameter values of the scenes."
     )
-    assumptions: tuple[Expression, ...] = entry("What the file assumes of its quantities.")
+    assumptions: tuple[Expression, ...] = entry("Assumptions of the file about its quantities.")
     declarations: tuple[tuple[Name, Name], ...] = entry("Names with what each is declared to be, such as an integer.")
     system: DescribedSystem = entry("The system.")
     tables: tuple[Table, ...] = entry("Tables of control laws and servo-constraints.")

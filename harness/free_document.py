@@ -39,10 +39,10 @@ class UniversalText:
     laws: tuple[LawText, ...] = entry("By control.")
     constants: tuple[tuple[str, ...], ...] = entry("Constants of integration of each law.")
     free: tuple[tuple[str, ...], ...] = entry("Controls that stay free functions of the time.")
-    positive: tuple[tuple[str, ...], ...] = entry("What must be positive where the law holds.")
-    checks: tuple[LawCheck, ...] = entry("What SymPy found when it tried each law.")
+    positive: tuple[tuple[str, ...], ...] = entry("Expressions that are positive where the law holds.")
+    checks: tuple[LawCheck, ...] = entry("Verdict of SymPy on each law.")
     conditions: tuple[ConditionText, ...] = entry(
-        "What must vanish, as the coefficient of which function of the state, from which terms of the system."
+        "Coefficients that must vanish, each with its function of the state and the terms of the system it comes from."
     )
     generic: bool = entry("True for generic values of parameters that were left open.")
     reason: str = entry("Reason of the verdict.")
@@ -85,4 +85,4 @@ class FreeMotionText:
     motion: MotionVerdict = entry("Whether the motion of the scene is free, and what shows it.")
     universal: UniversalText = entry("Laws under which every motion is free.")
     trajectory: TrajectoryText = entry("The control under which one motion is free.")
-    prescribed: PrescribedText | None = entry("What the controls do under prescribed reactions; null without any.")
+    prescribed: PrescribedText | None = entry("Controls under prescribed reactions; null without any.")

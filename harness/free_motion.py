@@ -136,7 +136,7 @@ class UniversalControls:
     )
     laws: tuple[UniversalLaw, ...] = entry("Families of laws.")
     conditions: tuple[ControlCondition, ...] = entry(
-        "What must vanish, as the coefficient of which function of the state, from which terms of the system."
+        "Coefficients that must vanish, each with its function of the state and the terms of the system it comes from."
     )
     generic: bool = entry("True for generic values of parameters that were left open.")
     reason: Message = entry("Reason of the verdict.")

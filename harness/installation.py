@@ -38,7 +38,7 @@ class Component:
 
     name: str = entry("A program of the system or a Python package.")
     version: str | None = entry("null if it is missing or does not run, empty if it prints none.")
-    purpose: str = entry("What it serves.")
+    purpose: str = entry("Purpose.")
     needed: bool = entry("Nothing works without it.")
     hint: str = entry("The command that installs it, or what else is to be done.")
 

@@ -39,7 +39,7 @@ def entry(
     text : str
         Description.
     default : object
-        Value if the document does not have it. What is callable makes it.
+        Value if the document does not have it. A callable makes it.
     key : str
         Name in the document, if it is another than the field's.
     optional : bool

@@ -111,7 +111,7 @@ class EffectCost:
     name: str = entry("Name of the effect.")
     status: Status = entry("Presence of the effect.")
     operations: int | None = entry(
-        "What it adds, or would add; null where nothing can be solved without it, or with it."
+        "Operations that it adds, or would add; null where nothing can be solved without it, or with it."
     )
     seconds: float | None = entry("The same in time, for one evaluation.")
 
@@ -125,7 +125,7 @@ class MeasuredCosts(Shown):
     seconds_per_evaluation: float = entry(
         "Time for one evaluation of the motion program, the shortest measured.", exclusiveMinimum=0
     )
-    measured_in: Measure = entry("What the programs were compiled to.")
+    measured_in: Measure = entry("Target of the compilation.")
     terms: tuple[TermCost, ...] = entry("Each term of (3) and (7).")
     effects: tuple[EffectCost, ...] = entry("Each effect of the system.")
     pairs: tuple[EffectCost, ...] = entry("Each pair of its switches, a*b: what both add beyond what each adds.", ())

@@ -171,7 +171,7 @@ class MotionProblem:
     time_span: tuple[NumberText, NumberText] | None = entry(
         "First and last time, as decimal digits; null where the scene names none."
     )
-    observe: tuple[Observable, ...] = entry("What the scene observes.")
+    observe: tuple[Observable, ...] = entry("Observed quantities of the scene.")
     coordinates: Names = entry("The n coordinates.")
     multipliers: Names = entry("The g multipliers, one for each constraint.")
     start: Mapping[str, NumberText] | None = entry(
@@ -232,7 +232,7 @@ class MotionProblem:
         (),
     )
     parameters: Names = entry("Inputs of every program after the signs: the parameters that stay open.", ())
-    values: Mapping[str, Fraction] = entry("What the scene gives to these; some may be missing.", dict)
+    values: Mapping[str, Fraction] = entry("Values that the scene gives to these; some may be missing.", dict)
     nominal: Mapping[str, FloatText] = entry(
         "Sizes of coordinates, velocities and the time t that the scene gives.", dict
     )

@@ -91,7 +91,7 @@ class Program:
 
     scene: str | None = entry("Name of the scene; null for a system alone.")
     solve: Solve = entry("How the multipliers are solved for.")
-    method: str = entry("What was factored, such as bordered or schur.")
+    method: str = entry("Factored matrix, such as bordered or schur.")
     inputs: Names = entry("Names, in the order of every function made of the program.")
     assignments: tuple[tuple[str, Expression], ...] = entry("Name and expression, each of inputs and names before it.")
     outputs: Mapping[str, Atom] = entry("Name or number of each quantity that is computed.", minProperties=1)

@@ -167,9 +167,7 @@ class SeriesDocument:
     radius_of_convergence: Radius = entry(
         "Radius of convergence about t0, how uncertain it is, and the singularities that set it."
     )
-    at: SeriesValues | None = entry(
-        "What the series add up to at a given time, where that is asked for.", None, optional=True
-    )
+    at: SeriesValues | None = entry("Sums of the series at a given time, where that is asked for.", None, optional=True)
     continuation: Continuation | None = entry(
         "States at the times where the motion was expanded anew, where that is asked for.", None, optional=True
     )

@@ -74,7 +74,7 @@ class Report:
         None,
     )
     controls: Mapping[str, Number] = entry("Empty where the scene does not observe them.", dict)
-    outputs: Mapping[str, Number] = entry("What the scene observes under names of its own.", dict)
+    outputs: Mapping[str, Number] = entry("Observed quantities with names of their own.", dict)
     undetermined: tuple[str, ...] = entry("Outputs that are not unique because constraints are redundant.", ())
     joints: Mapping[str, str] = entry(
         "Of multipliers the joint or body that they belong to, by its name in the scene file.", dict

@@ -171,7 +171,7 @@ class LinearizedMotion(Documented, Shown):
 
     _coordinates = _shared("coordinates", "The n coordinates.")
     _controls = _shared("controls", "The r controls, whose deviations are inputs.")
-    _outputs = _shared("outputs", "What C and D give the deviations of.")
+    _outputs = _shared("outputs", "Quantities whose deviations C and D give.")
     _points = _at_each("point", "Values of all names in the equations at each time.", "points", **POINTS)
     _basis = _at_each("basis", "N at each time, n rows of m numbers; it moves along with the motion.", **MATRICES)
     _B = _by_rates("B", "What u, du/dt and ddu/dt2 add to dx/dt at each time.")

@@ -63,7 +63,7 @@ class LinearEquations:
         "acceleration[b], their gradients equation_by_q[s,k] and so on by q, v, a, u, du and ddu, and "
         "A_rate[s,k]; what is absent is zero."
     )
-    outputs: tuple[str, ...] = entry("What the scene observes under names of its own.")
+    outputs: tuple[str, ...] = entry("Observed quantities with names of their own.")
 
     @cached_property
     def _evaluate(self) -> NumpyFunction:

@@ -122,14 +122,14 @@ class Linearization(Documented, Shown):
     coordinates: Names = entry("The n coordinates.")
     leading: Names = entry("The m coordinates that the tangent coordinates belong to.")
     controls: Names = entry("The r controls, whose deviations are inputs.")
-    outputs: Names = entry("What C and D give the deviations of.")
+    outputs: Names = entry("Quantities whose deviations C and D give.")
     point: Mapping[str, float] = entry(
         "Time, coordinates, velocities, accelerations, multipliers, and controls with their derivatives, by name."
     )
     mass: Matrix = entry("The mass matrix, n rows.", **MATRIX)
     basis: Matrix = entry("N, n rows of m numbers: the coordinates deviate by N xi, N^T A N = 1.", **MATRIX)
     A: Matrix = entry("Of x = (xi, eta), 2m rows.", **MATRIX)
-    B: Mapping[str, Matrix] = entry("What u, du/dt and ddu/dt2 add to dx/dt.", **by_rates(MATRIX))
+    B: Mapping[str, Matrix] = entry("Parts of dx/dt from u, du/dt and ddu/dt2.", **by_rates(MATRIX))
     C: Matrix = entry("Outputs by x.", **MATRIX)
     D: Mapping[str, Matrix] = entry("Outputs by u, du/dt and ddu/dt2.", **by_rates(MATRIX))
     drawing: Drawing | None

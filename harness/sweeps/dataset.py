@@ -103,10 +103,10 @@ class SweptOptions:
 class SweepDocument:
     """A sweep: one motion for many values of its parameters."""
 
-    scene: SweptScene = entry("What was swept.")
+    scene: SweptScene = entry("Swept scene.")
     settings: Mapping[str, str] = entry("Numbers that were set for all rows.")
     parameters: tuple[SweptParameter, ...] = entry(
-        "What varies, in the order of its columns; the last of the values varies fastest."
+        "Varied quantities, in the order of the columns; the values of the last vary fastest."
     )
     size: int | None = entry("Members of the sample; null without one.")
     seed: int | None = entry("Of the sample; null without one.")
@@ -115,7 +115,7 @@ class SweepDocument:
     keep: tuple[str, ...] = entry("Recorded quantities of each motion.")
     columns: tuple[str, ...] = entry("Of the files.")
     options: SweptOptions = entry("How the motions are integrated.")
-    versions: Mapping[str, str] = entry("What computed it.")
+    versions: Mapping[str, str] = entry("Versions of the programs that computed it.")
     statuses: Mapping[str, int] | None = entry(
         "How many rows came about how; of the document that a command publishes.", None, optional=True
     )

@@ -1,7 +1,7 @@
 ;;; Rational values of expressions and of their rates of change
 ;;;
-;;; A value with its rate is a pair of rationals, (value . rate). What is made of sums, products and whole powers has
-;;; both as soon as its symbols have; of anything else they are not looked for.
+;;; A value with its rate is a pair of rationals, (value . rate). Sums, products and whole powers have both as soon as
+;;; their symbols have; of other expressions they are not looked for.
 
 (in-package :maxima)
 

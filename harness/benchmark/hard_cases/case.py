@@ -57,8 +57,8 @@ class Case:
     """A hard case of the test set: its reference solution and its measurement."""
 
     name: str = entry("Name of the case.", key="case")
-    kind: Difficulty = entry("What makes it hard.")
-    truth: str = entry("What the methods are measured against.")
+    kind: Difficulty = entry("Difficulty of the case.")
+    truth: str = entry("Reference of the comparison.")
     examine: Callable[[Extent], Findings]
 
     @property

@@ -51,7 +51,7 @@ class SeriesCosts:
     """Times of expansions of an initial motion in Maxima."""
 
     scene: str = entry("Name of the scene.")
-    expansions: tuple[SeriesCost, ...] = entry("What each expansion took.")
+    expansions: tuple[SeriesCost, ...] = entry("Time of each expansion.")
 
 
 @dataclass(frozen=True)

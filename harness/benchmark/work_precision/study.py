@@ -78,12 +78,12 @@ class Study:
     scene: str = entry("Name of the scene.")
     title: str = entry("Title of the scene.")
     until: Fraction = entry("Last time of the motion.", pattern=EXACT_TIME)
-    machine: Machine = entry("What it was measured on.")
+    machine: Machine = entry("Computer of the measurement.")
     reference: Reference = entry(
         "Two runs: digits computed with, orders of expansion, and the largest relative difference."
     )
     measurements: tuple[Measurement, ...] = entry("Each method at each tolerance: its error and its time.")
-    omissions: tuple[Omission, ...] = entry("What was not measured, and why.")
+    omissions: tuple[Omission, ...] = entry("Measurements that were left out, with the reason.")
     advice: tuple[Advice, ...] = entry("The cheapest method for each number of digits.")
     prices: tuple[Price, ...] = entry("By what factor the time grows with one more digit.")
 
