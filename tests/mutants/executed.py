@@ -1,29 +1,120 @@
-"""Measure which tests execute a function of Python: those that can kill its mutants."""
+"""Measure which tests execute a function: those that can kill its mutants.
+
+The tests run in a copy of the sources in which each function begins with a mark, which writes down the test that runs.
+What Maxima executed it prints when it ends.
+"""
 
 from __future__ import annotations
 
+import ast
 import hashlib
-import os
+import json
 import re
-import subprocess
-import sys
-from collections import Counter
+from collections import ChainMap, Counter, defaultdict
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
-from functools import cached_property
 from pathlib import Path
 
+from copies import Copy, in_copies
 from sources import ROOT, Function, functions, read
 
-CHOSEN = ["-q", "-p", "no:cacheprovider", "-m", "not long or measured"]
 APART = {"companion", "faults", "figures", "mutants", "reference", "typeset"}  # tests of what no mutant is drawn from
 QUICK = 0.05  # seconds of a test whose time pytest does not list
-SECONDS = 60.0  # of tests that are run for a mutant, as measured: without the measurement they take half of it
-LONGEST = 600  # seconds of a file's tests
+SECONDS = 90.0  # of the tests that are run for a mutant, as measured
+MARKS = "marks.txt"  # what the marks write in a copy
+LONGEST = 600  # seconds of processor time of a file's tests
+
+MARKS_OF_PYTHON = """
+import os, re
+
+met = set()
 
 
-class Executed:
-    """The tests that execute each function, and the time that each test takes.
+def mark(*numbers):
+    test = os.environ.get("PYTEST_CURRENT_TEST", "")
+    new = [number for number in numbers if (number, test) not in met]
+    if new:
+        met.update((number, test) for number in new)
+        with open({file!r}, "a") as out:
+            out.write("".join(f"{{number}} {{test}}\\n" for number in new))
+
+
+def run_process(command, place, printed):
+    from holonom.sandbox import run_process as run
+
+    status = run(command, place, printed)
+    for found in re.findall(rb"^MARKS([ 0-9]*)$", printed, re.MULTILINE):
+        mark(*map(int, found.split()))
+    return status
+"""
+MARKS_OF_LISP = """
+(defvar *marked* (make-array {count} :initial-element nil))
+(defun mark (number) (setf (aref *marked* number) t))
+(defun print-marks () (format t "~%MARKS~{{ ~D~}}~%" (loop for i below {count} if (aref *marked* i) collect i)))
+"""
+INSERTED = {
+    "maxima/namespace.lisp": ("(in-package :maxima)\n", "{0}" + MARKS_OF_LISP),
+    "harness/headless.lisp": ("(defun leave (status)", "{0} (if (fboundp 'print-marks) (funcall 'print-marks))"),
+    "harness/maxima.py": ("run_process([*program", "__import__('marks').{0}"),
+}
+
+
+def marked_body(function: Function, number: int) -> str:
+    """Return the body of a function with a mark at its start."""
+    if function.language == "mac":
+        return f"(?mark({number}), {function.body})"
+    if function.language == "lisp":
+        declared = re.match(r"\s*(\(declare .*\)\s*\n)?", function.body).end()
+        return f"{function.body[:declared]}(mark {number}) {function.body[declared:]}"
+    indent = re.match(r"\s*", function.body)[0]
+    return f"{indent}__import__('marks').mark({number})\n{function.body}"
+
+
+def add_marks(copy: Copy) -> None:
+    """Mark all functions of a copy."""
+    texts = defaultdict(str)
+    for number, function in reversed([*enumerate(functions())]):
+        text = texts[function.path] or read(function.path)
+        marked = text[: function.start] + marked_body(function, number) + text[function.end :]
+        texts[function.path] = marked if function.language != "py" or _parses(marked) else text
+    for path, (old, new) in INSERTED.items():
+        text = texts[path] or read(path)
+        assert text.count(old) == 1, path
+        texts[path] = text.replace(old, new.format(old, count=len(functions())))
+    for path, text in texts.items():
+        (copy.directory / path).write_text(text, encoding="utf-8")
+    text = MARKS_OF_PYTHON.format(file=str(copy.directory / MARKS))
+    (copy.directory / "site" / "marks.py").write_text(text, encoding="utf-8")
+
+
+def _parses(text: str) -> bool:
+    try:
+        ast.parse(text)
+    except SyntaxError:  # between a decorator and what it decorates
+        return False
+    return True
+
+
+def _executed_by(copy: Copy, file: Path) -> dict[str, dict]:
+    """Run the tests of a file; return the seconds and functions of each. What a fixture does, its file does."""
+    marks = copy.directory / MARKS
+    marks.write_text("", encoding="utf-8")
+    name = file.relative_to(ROOT).as_posix()
+    _, printed = copy.run(LONGEST, "--durations=0", name)
+    ran, times = defaultdict(set), Counter()
+    for line in marks.read_text(encoding="utf-8").splitlines():
+        number, _, test = line.partition(" ")
+        test, _, phase = test.rpartition(" ")
+        if test:
+            of_file = phase == "(setup)" or file.suffix == ".mac"
+            ran[name if of_file else test].add(str(functions()[int(number)]))
+    for seconds, test in re.findall(r"^([\d.]+)s (?:call|setup) +(\S.*)", printed, re.MULTILINE):
+        times[test] += float(seconds)
+        times[name] += float(seconds)
+    return {test: {"seconds": times[test], "functions": sorted(ran[test])} for test in ran}
+
+
+def measure(folder: Path, jobs: int) -> Executed:
+    """Measure the test files that are new or have changed.
 
     Parameters
     ----------
@@ -31,65 +122,49 @@ class Executed:
         Where the measurement of each test file is stored.
     jobs : int
         Number of test files that run at once.
+
+    Returns
+    -------
+    Executed
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    stored = {file: folder / f"{file.stem}-{_digest(file)}.json" for file in _test_files()}
+    left = [file for file in stored if not stored[file].is_file()]
+    for file, found in in_copies(_executed_by, left, jobs, add_marks):
+        stored[file].write_text(json.dumps(found, indent=0), encoding="utf-8")
+    texts = (each.read_text(encoding="utf-8") for each in stored.values())
+    return Executed(dict(ChainMap(*map(json.loads, texts))))
+
+
+def _test_files() -> Iterator[Path]:
+    yield from sorted((ROOT / "tests").rglob("rtest_*.mac"))
+    for each in sorted((ROOT / "tests").rglob("test_*.py")):
+        if not APART.intersection(each.relative_to(ROOT / "tests").parts) and each.name != "test_rtests.py":
+            yield each
+
+
+def _digest(file: Path) -> str:
+    text = f"{file.relative_to(ROOT)}\0{file.read_text(encoding='utf-8')}"
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+class Executed:
+    """The tests that execute each function.
+
+    Functions that were written after the measurement have the tests of the functions that call them.
+
+    Parameters
+    ----------
+    tests : mapping of str to mapping
+        The ``seconds`` of each test and the ``functions`` that it executes.
     """
 
-    def __init__(self, folder: Path, jobs: int) -> None:
-        sources = b"\0".join(read(path).encode() for path in sorted({each.path for each in functions()}))
-        self._folder = folder / f"executed-{hashlib.sha256(sources).hexdigest()[:16]}"
-        self._folder.mkdir(parents=True, exist_ok=True)
-        with ThreadPoolExecutor(jobs) as pool:
-            list(pool.map(self._measure, self._files()))
-
-    def _files(self) -> Iterator[Path]:
-        for each in sorted((ROOT / "tests").rglob("test_*.py")):
-            if not APART.intersection(each.relative_to(ROOT / "tests").parts):
-                yield each
-
-    def _data(self, file: Path) -> Path:
-        text = f"{file.relative_to(ROOT)}\0{file.read_text(encoding='utf-8')}"
-        return self._folder / f"{file.stem}-{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-
-    def _measure(self, file: Path) -> None:
-        """Run the tests of a file, unless they were; write what they execute, and their times when they have ended."""
-        data = self._data(file)
-        if data.with_suffix(".txt").is_file():
-            return
-        options = ["-n0", "--cov=harness", "--cov-context=test", "--cov-report=", "--durations=0"]
-        command = ["prlimit", f"--cpu={LONGEST}", sys.executable, "-m", "pytest", *CHOSEN, *options, str(file)]
-        environment = os.environ | {"COVERAGE_FILE": str(data)}
-        done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
-        if done.returncode not in (0, 5):  # 5: no tests but long ones
-            print(f"These tests fail without a mutant: {file}\n{done.stdout[-1000:]}", flush=True)
-        data.with_suffix(".txt").write_text(done.stdout, encoding="utf-8")
-
-    @cached_property
-    def times(self) -> Mapping[str, float]:
-        """Seconds of each test that takes more than a moment."""
-        found: Counter[str] = Counter()
-        for file in self._files():
-            for line in self._data(file).with_suffix(".txt").read_text(encoding="utf-8").splitlines():
-                if listed := re.match(r"([\d.]+)s (?:call|setup) +(\S.*)", line):
-                    found[listed[2]] += float(listed[1])
-        return found
-
-    @cached_property
-    def tests(self) -> Mapping[Function, frozenset[str]]:
-        """The tests that execute a line of each function."""
-        from coverage import CoverageData  # `make mutants` alone needs it
-
-        ran: dict[str, dict[int, set[str]]] = {}
-        for data in filter(Path.is_file, map(self._data, self._files())):
-            measured = CoverageData(str(data))
-            measured.read()
-            for path in measured.measured_files():
-                lines = ran.setdefault(Path(path).relative_to(ROOT).as_posix(), {})
-                for line, contexts in measured.contexts_by_lineno(path).items():
-                    lines.setdefault(line, set()).update(each.rpartition("|")[0] for each in contexts if "|" in each)
-        return {each: _tests_in(each, ran.get(each.path, {})) for each in functions() if each.language == "py"}
-
-    @cached_property
-    def _breadth(self) -> Mapping[str, int]:
-        return Counter(test for tests in self.tests.values() for test in tests)
+    def __init__(self, tests: Mapping[str, Mapping]) -> None:
+        self._tests = tests
+        self._of: dict[str, set[str]] = defaultdict(set)
+        for test, measured in tests.items():
+            for function in measured["functions"]:
+                self._of[function].add(test)
 
     def by(self, function: Function) -> list[str]:
         """Return tests that execute a function: of each file the one that executes the fewest functions, then the next.
@@ -97,28 +172,28 @@ class Executed:
         Parameters
         ----------
         function : Function
-            A function of Python.
+            A function.
 
         Returns
         -------
         list of str
-            Tests that take a minute together, one at least.
+            Tests that take `SECONDS` together, one at least if there is any.
         """
+        breadth = {test: len(self._tests[test]["functions"]) for test in self._executing(function)}
         ranked, before = [], Counter()
-        for test in sorted(self.tests[function], key=lambda each: (self._breadth[each], each)):
+        for test in sorted(breadth, key=lambda each: (breadth[each], each)):
             file = test.partition("::")[0]
-            ranked.append((before[file], self._breadth[test], test))
+            ranked.append((before[file], breadth[test], test))
             before[file] += 1
         chosen, left = [], SECONDS
         for *_, test in sorted(ranked):
-            left -= self.times.get(test, QUICK)
+            left -= self._tests[test]["seconds"] or QUICK
             if left < 0 and chosen:
                 break
             chosen.append(test)
         return chosen
 
-
-def _tests_in(function: Function, ran: Mapping[int, set[str]]) -> frozenset[str]:
-    first = read(function.path).count("\n", 0, function.start) + 1
-    inside = range(first, first + function.body.count("\n") + 1)
-    return frozenset(test for line in inside for test in ran.get(line, ()))
+    def _executing(self, function: Function) -> set[str]:
+        name = function.name.rpartition(".")[2].lstrip("$")
+        callers = (str(each) for each in functions() if each.words & {name, f"${name}"})
+        return self._of.get(str(function)) or set().union(*(self._of.get(each, ()) for each in callers))

@@ -13,34 +13,28 @@ import argparse
 import difflib
 import hashlib
 import json
-import os
-import queue
 import random
 import re
-import shutil
 import signal
-import subprocess
 import sys
 import tempfile
 import time
 import tomllib
 import warnings
-from collections.abc import Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-import psutil
 from changes import changes
-from executed import CHOSEN, Executed
+from copies import Copy, in_copies
+from executed import measure
 from scipy.stats import binomtest
-from sources import END_TO_END, ROOT, Function, functions, nearest_tests, read
+from sources import Function, functions, read
 
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
-PYTEST = [*CHOSEN, "-x", "-n0", "-rfE"]
+END_TO_END = ["tests/examples/test_closed_forms.py", "tests/crosscheck/test_check.py"]
 SECONDS = 240  # of processor time for each process of a test file; the unchanged program takes less than a third
-LONGEST = 3600  # seconds by the clock, for what waits without computing
 
 
 @dataclass(frozen=True)
@@ -94,81 +88,37 @@ def is_a_program(language: str, body: str) -> bool:
         return False
 
 
-class Copy:
-    """A copy of the sources, which may be changed."""
-
-    def __init__(self, directory: Path) -> None:
-        self.directory = directory
-        for folder in ("harness", "maxima", "tests", "examples"):
-            shutil.copytree(ROOT / folder, directory / folder, ignore=shutil.ignore_patterns("__pycache__"))
-        for file in filter(Path.is_file, ROOT.iterdir()):  # some tests read the README
-            shutil.copy(file, directory)
-        (directory / "site").mkdir()
-        (directory / "site" / "holonom").symlink_to(directory / "harness")  # before the package that is installed
-        own = {"PYTHONPATH": str(directory / "site"), "PYTHONDONTWRITEBYTECODE": "1"}
-        own["XDG_CACHE_HOME"] = str(directory / "cache")  # images of Maxima with mutants
-        self.environment = os.environ | own
-
-    def failing(self, *tests: str) -> str:
-        """Run tests; return the first test that fails, the last one on timeout, "" if none does."""
-        named = [re.sub(r".*/(rtest_\w+)\.mac$", r"tests/test_rtests.py::test_rtest[\1]", test) for test in tests]
-        command = ["prlimit", f"--cpu={SECONDS}", sys.executable, "-m", "pytest", *PYTEST, *named]
-        with psutil.Popen(command, cwd=self.directory, env=self.environment, stdout=-1, stderr=-1) as running:
-            try:
-                printed, _ = running.communicate(timeout=LONGEST)
-            except subprocess.TimeoutExpired:
-                for process in [*running.children(recursive=True), running]:
-                    process.kill()
-                return tests[-1]
-        if running.returncode in (0, 5):  # 5: no tests but long ones
-            return ""
-        first = re.search(r"^(?:FAILED|ERROR) ([^\s[]+(?:\[.*?\])?)(?: - |$)", printed.decode(), re.MULTILINE)
-        return first[1] if first else tests[-1]
-
-    def killer(self, mutant: Mutant, batches: Iterable[list[str]]) -> str:
-        """Return the first test that fails with the mutant, or "" if it survives."""
-        file = self.directory / mutant.function.path
-        file.write_text(mutant.source, encoding="utf-8")
-        try:
-            return next(filter(None, (self.failing(*batch) for batch in batches)), "")
-        finally:
-            file.write_text(read(mutant.function.path), encoding="utf-8")
+def failing(copy: Copy, *tests: str) -> str:
+    """Run tests; return the first test that fails, the last one on timeout, "" if none does."""
+    status, printed = copy.run(SECONDS, "-x", "-rfE", *tests)
+    if status in (0, 5):  # 5: no tests but long ones
+        return ""
+    first = re.search(r"^(?:FAILED|ERROR) ([^\s[]+(?:\[.*?\])?)(?: - |$)", printed, re.MULTILINE)
+    return first[1] if first else tests[-1]
 
 
-def batches_of(mutant: Mutant, executed: Executed) -> list[list[str]]:
-    """Return the tests of a mutant, those of one process together: quick ones, then a file at a time."""
-    if mutant.function.language == "py":
-        quick, files = executed.by(mutant.function), END_TO_END
-    else:
-        files = nearest_tests(mutant.function)
-        quick = [test for test in files if test.endswith(".mac")]
-    return [each for each in (quick, *([file] for file in files if file not in quick)) if each]
+def killer(copy: Copy, mutant: Mutant, tests: Sequence[str]) -> str:
+    """Return the first test that fails with the mutant, or "" if it survives."""
+    file = copy.directory / mutant.function.path
+    file.write_text(mutant.source, encoding="utf-8")
+    try:
+        return failing(copy, *tests) if tests else ""
+    finally:
+        file.write_text(read(mutant.function.path), encoding="utf-8")
 
 
-def files_of(batches: Iterable[list[str]]) -> list[str]:
+def files_of(tests: Iterable[str]) -> list[str]:
     """Return the files of tests."""
-    return sorted({test.partition("::")[0] for batch in batches for test in batch})
+    return sorted({test.partition("::")[0] for test in tests})
 
 
-def with_verdicts(mutants: Mapping[Mutant, list[list[str]]], jobs: int) -> Iterator[tuple[Mutant, str]]:
-    """Yield each mutant with the test that kills it, as they come."""
-    copies: queue.SimpleQueue[Copy] = queue.SimpleQueue()
-
-    def outcome(mutant: Mutant) -> str:
-        copy = copies.get()
-        try:
-            return copy.killer(mutant, mutants[mutant])
-        finally:
-            copies.put(copy)
-
-    with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory, ThreadPoolExecutor(jobs) as pool:
-        for i in range(jobs):
-            copies.put(Copy(Path(directory, str(i))))
-        running = {pool.submit(outcome, mutant): mutant for mutant in mutants}
-        try:
-            yield from ((running[done], done.result()) for done in as_completed(running))
-        finally:
-            pool.shutdown(cancel_futures=True)
+def require_passing(tests: Iterable[str]) -> None:
+    """End if one of these tests fails without a mutant."""
+    with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
+        copy = Copy(Path(directory, "copy"))
+        for test in sorted(tests):
+            if failing(copy, test):
+                raise SystemExit(f"This test fails without a mutant: {test}")
 
 
 def report(outcomes: dict[Mutant, str]) -> None:
@@ -199,27 +149,23 @@ def main() -> None:
     known = earlier.get("outcomes", {}) if earlier.get("seed") == seed else {}
     print(f"seed {seed}, {given.count} mutants of {len(functions())} functions")
     given.results.parent.mkdir(parents=True, exist_ok=True)
-    executed = Executed(given.results.parent, given.jobs)
-    batches = {mutant: batches_of(mutant, executed) for mutant in islice(draw(seed), given.count)}
-    mutants = {mutant: (mutant.digest(), mutant.digest(files_of(tests))) for mutant, tests in batches.items()}
+    executed = measure(given.results.parent / "executed", given.jobs)
+    chosen = {mutant: [*executed.by(mutant.function), *END_TO_END] for mutant in islice(draw(seed), given.count)}
+    digests = {mutant: (mutant.digest(), mutant.digest(files_of(tests))) for mutant, tests in chosen.items()}
     outcomes = {}
-    for mutant, (own, with_tests) in mutants.items():
-        killer, met = known.get(own, ("", ""))
-        if killer or met == with_tests:
-            outcomes[mutant] = killer
-    left = {mutant: tests for mutant, tests in batches.items() if mutant not in outcomes}
-    for mutant, killer in with_verdicts(left, given.jobs):
-        outcomes[mutant] = killer
-        print(f"{len(outcomes)}/{len(mutants)} {f'killed by {killer}' if killer else 'SURVIVES'}: {mutant}", flush=True)
-        own, with_tests = mutants[mutant]
-        known[own] = (killer, with_tests)
+    for mutant, (own, with_tests) in digests.items():
+        found, met = known.get(own, ("", ""))
+        if found or met == with_tests:
+            outcomes[mutant] = found
+    left = [mutant for mutant in chosen if mutant not in outcomes]
+    for mutant, found in in_copies(lambda copy, mutant: killer(copy, mutant, chosen[mutant]), left, given.jobs):
+        outcomes[mutant] = found
+        print(f"{len(outcomes)}/{len(chosen)} {f'killed by {found}' if found else 'SURVIVES'}: {mutant}", flush=True)
+        own, with_tests = digests[mutant]
+        known[own] = (found, with_tests)
         given.results.write_text(json.dumps({"seed": seed, "outcomes": known}, indent=0), encoding="utf-8")
-    with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
-        copy = Copy(Path(directory))
-        for test in sorted(set(filter(None, outcomes.values()))):
-            if copy.failing(test):
-                raise SystemExit(f"This test fails without a mutant: {test}")
-    report({mutant: outcomes[mutant] for mutant in mutants})
+    require_passing(set(filter(None, outcomes.values())))
+    report({mutant: outcomes[mutant] for mutant in chosen})
 
 
 if __name__ == "__main__":

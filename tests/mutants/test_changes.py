@@ -1,4 +1,4 @@
-"""Mutants: the changes of each language, the draw, and the rule that finds the nearest tests."""
+"""Mutants: the changes of each language, the draw and the score."""
 
 from itertools import islice
 
@@ -77,19 +77,6 @@ def test_a_seed_gives_the_same_mutants_again():
 def test_what_a_body_says_about_its_lengths_is_no_change():
     assert run.words_of("zip(a, b, strict=True)") == run.words_of("zip(a,  b, strict=False)")
     assert run.words_of("f(True)") != run.words_of("f(False)")
-
-
-@pytest.mark.parametrize(
-    ("function", "test"),
-    [
-        ("maxima/derivation/christoffel.mac::christoffel_first_kind", "tests/maxima/rtest_christoffel.mac"),
-        ("maxima/program/power_series.lisp::append-rounded", "tests/maxima/rtest_power_series.mac"),
-        ("maxima/free_motion/chain.mac::shown_modulo", "tests/test_free_motion.py"),
-    ],
-)
-def test_the_nearest_tests_of_a_function(function, test):
-    found = {str(each): each for each in sources.functions()}
-    assert test in sources.nearest_tests(found[function])
 
 
 def test_the_score_leaves_out_equivalent_mutants(capsys, tmp_path, monkeypatch):

@@ -1,43 +1,39 @@
-"""The tests of a mutant of Python are those that execute its function."""
+"""The tests of a mutant are those that execute its function."""
 
-from pathlib import Path
-
+import executed
 import pytest
 import sources
-from executed import SECONDS, Executed
+from copies import Copy
 
-FIRST, SECOND = [each for each in sources.functions() if each.language == "py"][:2]
-
-
-def line_of(function: sources.Function) -> int:
-    return sources.read(function.path).count("\n", 0, function.start) + 1
-
-
-@pytest.fixture
-def measured(tmp_path, monkeypatch) -> Executed:
-    """A measurement of two functions: one test executes both, two the first alone."""
-    monkeypatch.setattr(Executed, "_files", lambda self: [Path(__file__)])
-    monkeypatch.setattr(Executed, "_measure", lambda self, file: None)
-    found = Executed(tmp_path, jobs=1)
-    file = found._data(Path(__file__))
-    data = pytest.importorskip("coverage").CoverageData(str(file))
-    for test, functions in {"a.py::wide[x]": (FIRST, SECOND), "b.py::slow": (FIRST,), "c.py::quick": (FIRST,)}.items():
-        data.set_context(f"{test}|run")
-        for function in functions:
-            data.add_lines({str(sources.ROOT / function.path): [line_of(function)]})
-    data.write()
-    times = f"{2 * SECONDS:.2f}s call     b.py::slow\n0.30s setup    c.py::quick\n1 passed\n"
-    file.with_suffix(".txt").write_text(times, encoding="utf-8")
-    return found
+FIRST, SECOND, OTHER = [each for each in sources.functions() if each.language == "py"][:3]
+TESTS = {
+    "a.py::wide[x]": {"seconds": 0, "functions": [str(FIRST), str(SECOND)]},
+    "b.py::slow": {"seconds": 2 * executed.SECONDS, "functions": [str(FIRST)]},
+    "c.py::quick": {"seconds": 0.3, "functions": [str(FIRST)]},
+}
 
 
-def test_the_most_specific_tests_come_first_while_there_is_time(measured):
-    assert measured.by(FIRST) == ["b.py::slow"], "one at least, whatever it takes"
-    measured.times = {}
-    assert measured.by(FIRST) == ["b.py::slow", "c.py::quick", "a.py::wide[x]"]
-    assert measured.by(SECOND) == ["a.py::wide[x]"]
+def test_the_most_specific_tests_come_first_while_there_is_time():
+    assert executed.Executed(TESTS).by(FIRST) == ["b.py::slow"], "one at least, whatever it takes"
+    quick = {**TESTS, "b.py::slow": {**TESTS["b.py::slow"], "seconds": 1}}
+    assert executed.Executed(quick).by(FIRST) == ["b.py::slow", "c.py::quick", "a.py::wide[x]"]
+    assert executed.Executed(quick).by(SECOND) == ["a.py::wide[x]"]
 
 
-def test_no_test_executes_a_function_that_none_calls(measured):
-    other = next(each for each in sources.functions() if each.language == "py" and each.path != FIRST.path)
-    assert measured.by(other) == []
+def test_a_function_that_was_not_measured_has_the_tests_of_its_callers():
+    found = {str(each): each for each in sources.functions()}
+    name, caller = "maxima/steps.mac::meaning_of", "maxima/steps.mac::require_meanings"
+    tests = {"tests/a.mac": {"seconds": 1, "functions": [caller]}}
+    assert executed.Executed(tests).by(found[name]) == ["tests/a.mac"]
+    assert executed.Executed(tests).by(OTHER) == []
+
+
+@pytest.mark.long
+def test_marks_tell_what_a_test_executes_in_each_language(tmp_path):
+    copy = Copy(tmp_path / "copy")
+    executed.add_marks(copy)
+    found = executed._executed_by(copy, executed.ROOT / "tests/maxima/rtest_christoffel.mac")
+    functions = found["tests/maxima/rtest_christoffel.mac"]["functions"]
+    called = "maxima/derivation/christoffel.mac::christoffel_first_kind", "maxima/language/one_pass.lisp::$gradient"
+    assert set(called) <= set(functions)
+    assert "maxima/control/servo.mac::servo_motion" not in functions
