@@ -181,6 +181,41 @@ def test_a_run_that_ended_in_a_singular_configuration_was_an_internal_error(writ
     assert stopped.value.case is Difficulty.SINGULAR_CONFIGURATION
 
 
+REDUNDANT = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, a], parameters = [g],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2 + dot(a)^2/4, potential_energy = g*y, constraints = [%s])$
+s : holonomic_scene(system, parameter_values = [g = 981/100], time_span = [0, 1],
+  initial_state = [a = 1/2], initial_guess = [x = 9/10, y = 1/2])$"""
+CIRCLE, ANGLE = "x^2 + y^2 - 1", "x - cos(a), y - sin(a)"
+
+
+def test_constraints_that_are_solved_depend_on_each_other_in_a_regular_configuration(write_scene):
+    """Truth: the angle's own constraints are independent everywhere, and the circle follows from them."""
+    ends = [
+        final(motion_problem(write_scene(REDUNDANT % f"{one}, {other}"), Request(), Limits()))
+        for one, other in [(CIRCLE, ANGLE), (ANGLE, CIRCLE)]
+    ]
+    assert numbers(ends[0].coordinates) == pytest.approx(numbers(ends[1].coordinates), abs=1e-10)
+    assert [segment.case for segment in ends[0].segments] == [None, Difficulty.REDUNDANT, None]
+    assert [len(end.segments) for end in ends] == [3, 1]
+    assert all(Difficulty.SINGULAR_CONFIGURATION not in end.cases for end in ends)
+
+
+RHOMBUS = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, z, w],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2 + dot(z)^2 + dot(w)^2, potential_energy = 9*y + 10*w,
+  constraints = [x^2 + y^2 - 1, (z - 1)^2 + w^2 - 1, (z - x)^2 + (w - y)^2 - 1, 2*x^2 + 2*y^2 - 2])$
+s : holonomic_scene(system, initial_state = [x = 0, y = 1, z = 1, w = 1, dot(x) = 1, dot(y) = 0, dot(z) = 1,
+  dot(w) = 0], time_span = [0, 1])$"""
+
+
+def test_a_singular_configuration_of_redundant_constraints_is_one(write_scene):
+    """Truth: the rhombus lies in line where w = y = 0."""
+    report = final(motion_problem(write_scene(RHOMBUS), Request(), Limits()))
+    assert report.segments[1].case is Difficulty.SINGULAR_CONFIGURATION
+    assert report.coordinates["z"] == pytest.approx(report.coordinates["x"] + 1, abs=1e-8)
+
+
 LOST_LOGARITHM = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   forces = [(log(u) - log(t))*y, 0], constraints = [x])$

@@ -151,14 +151,23 @@ def _scaled(at: Matrices, t: float) -> WeightedConstraints:
 
 
 class Watch:
-    """Watches the constraints of a motion."""
+    """Watches the constraints of a motion.
+
+    Attributes
+    ----------
+    chosen_alone : bool
+        Whether the constraints that the program solves are the only ones that the last step brought nearer to
+        dependence, while all of them together keep their rank.
+    """
 
     def __init__(self, problem: MotionProblem, matrices: MotionMatrices) -> None:
         self._names = [problem.multipliers[beta] for beta in problem.independent]
+        self._redundant = len(self._names) < len(problem.multipliers)
         self._matrices = matrices
         start = [float(problem.start[name]) for name in problem.state]
         self._scale = self._constraints(float(problem.start["t"]), start).scale
-        self._least = 1.0
+        self._least = self._least_of_all = 1.0
+        self.chosen_alone = False
 
     def begin(self, t: float, state: Numbers) -> None:
         """Record the state from which the search continues.
@@ -171,6 +180,7 @@ class Watch:
             Coordinates, then velocities.
         """
         self._least = self.least(t, state)
+        self._least_of_all = self._of_all(t, state)
 
     def singular_ahead(self, t: float, state: Numbers) -> bool:
         """Return True if the next steps will reach a singular configuration.
@@ -189,7 +199,9 @@ class Watch:
         bool
         """
         last, self._least = self._least, self.least(t, state)
-        return self._least < SMALL and self._least < REACH * (last - self._least)
+        last_of_all, self._least_of_all = self._least_of_all, self._of_all(t, state)
+        self.chosen_alone = self._redundant and not _vanishes(last_of_all, self._least_of_all)
+        return _vanishes(last, self._least)
 
     def least(self, t: float, state: Numbers) -> float:
         """Return the least singular value of the constraints' directions.
@@ -207,6 +219,12 @@ class Watch:
             One without constraints.
         """
         return float(self._constraints(t, state).singular_values().min(initial=1.0))
+
+    def _of_all(self, t: float, state: Numbers) -> float:
+        """Return the least relevant singular value of all constraints."""
+        if not self._redundant:
+            return self._least
+        return least_of(singular_values_at(self._matrices, float(t), as_floats(state)), len(self._names))
 
     def vanished(self, t: float, state: Numbers) -> str | None:
         """Return the multiplier whose constraint has lost its gradient, if there is one.
@@ -228,6 +246,11 @@ class Watch:
 
     def _constraints(self, t: float, state: Numbers) -> WeightedConstraints:
         return _scaled(self._matrices.independent(float(t), as_floats(state)), float(t))
+
+
+def _vanishes(last: float, least: float) -> bool:
+    """Return True if a singular value will vanish within the next steps."""
+    return least < SMALL and least < REACH * (last - least)
 
 
 def vanishing_times(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:

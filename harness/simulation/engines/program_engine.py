@@ -42,6 +42,10 @@ LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot v
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
 NO_SLOPE = translatable("a force has no slope there, so that the motion may not be unique")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
+CHOICE = translatable(
+    "the independent constraints that come first, which are solved, become dependent and later ones do not: list "
+    "those first"
+)
 
 
 Taken = tuple[Any, Any, Any, int]
@@ -296,7 +300,7 @@ class ProgramEngine:
         self._keep_constraints()
         if not self._is_finite:
             self._go_back(time_point, before)
-            self._obstruction = self._obstruction_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
+            self._obstruction = self._obstruction_here(*self._why_singular)
             return []
         self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
@@ -307,7 +311,7 @@ class ProgramEngine:
         """Return the obstruction ahead, by the constraints and the last step, or None."""
         t = float(self.time)
         if self.watch.singular_ahead(t, self.state):
-            return self._obstruction_here(Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR)
+            return self._obstruction_here(*self._why_singular)
         if self.time == until or abs(self._integrator.last_h) >= SHORTER * self._longest:
             return None
         if self._pivots_lose(t, self.state) > LOST:
@@ -340,6 +344,13 @@ class ProgramEngine:
         fixed = as_floats(self.solutions(np.array([t]), np.reshape(state, (-1, 1))).accelerations[:, 0])
         error = share_of(fixed - chosen, chosen, self._matrices.nominal.accelerations)
         return float(error) if np.isfinite(error) else np.inf
+
+    @property
+    def _why_singular(self) -> tuple[Difficulty, str]:
+        """The reason of dependence: of all constraints, or of those that are solved."""
+        if self.watch.chosen_alone:
+            return Difficulty.REDUNDANT, CHOICE
+        return Difficulty.SINGULAR_CONFIGURATION, NEARS_SINGULAR
 
     @property
     def _why_no_step(self) -> tuple[Difficulty | None, str]:
