@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .crosscheck.report import Verdict
-from .free_motion import MotionVerdict, TrajectoryKind, UniversalVerdict
+from .expression.presentation import formula_text
+from .free_motion import FreeMotion, Law, MotionVerdict, TrajectoryKind, UniversalVerdict
 from .structs import entry
 
 LawText = Mapping[str, str]
@@ -86,3 +87,63 @@ class FreeMotionText:
     universal: UniversalText = entry("Laws under which every motion is free.")
     trajectory: TrajectoryText = entry("The control under which one motion is free.")
     prescribed: PrescribedText | None = entry("Controls under prescribed reactions; null without any.")
+
+
+def free_motion_text(found: FreeMotion) -> FreeMotionText:
+    """Return the results as they are published.
+
+    Parameters
+    ----------
+    found : FreeMotion
+        Results with checked verdicts.
+
+    Returns
+    -------
+    FreeMotionText
+    """
+    universal, trajectory, prescribed = found.universal, found.trajectory, found.prescribed
+    laws, order = universal.laws, trajectory.order
+    return FreeMotionText(
+        found.scene,
+        None if found.condition is None else tuple(map(formula_text, found.condition)),
+        found.left_out,
+        found.motion,
+        UniversalText(
+            universal.verdict,
+            laws=tuple(law_texts(law.controls) for law in laws),
+            constants=tuple(law.constants for law in laws),
+            free=tuple(law.free for law in laws),
+            positive=tuple(tuple(map(formula_text, law.positive)) for law in laws),
+            checks=tuple(LawCheck(law.check.verdict, law.check.digits, law.check.points) for law in laws),
+            conditions=tuple(
+                ConditionText(formula_text(each.expression), formula_text(each.place), each.effects)
+                for each in universal.conditions
+            ),
+            generic=universal.generic,
+            reason=universal.reason,
+        ),
+        TrajectoryText(
+            trajectory.kind,
+            law=None if order else law_texts(trajectory.law) or None,
+            series=order and law_texts(trajectory.law) | {"order": order},
+            free=trajectory.free,
+            samples=trajectory.samples or None,
+            reason=trajectory.reason,
+        ),
+        prescribed and PrescribedText(law_texts(prescribed.reactions), law_texts(prescribed.controls)),
+    )
+
+
+def law_texts(law: Law) -> dict[str, str]:
+    """Return the formulas of a law in the notation of scene files.
+
+    Parameters
+    ----------
+    law : mapping of str to SymPy expression
+        By control.
+
+    Returns
+    -------
+    dict of str to str
+    """
+    return {name: formula_text(value) for name, value in law.items()}

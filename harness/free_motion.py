@@ -163,7 +163,7 @@ class SeriesOfControls:
         step = Symbol("t", real=True) - to_sympy(self.time_tree)
 
         def added_up(coefficients: tuple[Expr, ...]) -> Expr:
-            terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if c != 0]
+            terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if not c.is_zero]
             return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
 
         return {name: added_up(each(to_sympy, trees)) for name, trees in self.coefficients.items()}

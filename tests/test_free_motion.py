@@ -11,8 +11,8 @@ import sympy
 from refusing import refused
 from sympy import Function, Symbol, cos, exp, symbols
 
-from holonom.display.free_motion import formula, power_series
-from holonom.free_motion import FirstCoefficient, FreeMotionVerdict, free_motion
+from holonom.expression.presentation import formula_text
+from holonom.free_motion import FirstCoefficient, FreeMotionVerdict, SeriesOfControls, free_motion
 from holonom.language import speaking, translated
 from holonom.number_texts import number
 from holonom.program.forms import MotionProgram
@@ -372,15 +372,17 @@ def test_a_truncated_series_was_printed_highest_power_first_and_added_up(write_s
     x = 1 - sympy.Rational(3, 4) * (t - 1) ** 2
     y = sympy.Rational(3, 2) + (t - 1) - (t - 1) ** 2 / 6
     assert [sympy.diff(law - y / x, t, k).subs(t, 1) for k in range(3)] == [0, 0, 0]
-    written = power_series(law)
+    written = formula_text(law)
     assert written.startswith("3/2 + (t - 1) + 23*(t - 1)^2/24 ")
     assert written.index("^2") < written.index("^3") < written.index("^8")
 
 
 def test_laws_were_printed_by_names_that_maxima_does_not_know():
     law = sympy.Abs(t) * sympy.sign(t) + sympy.pi * sympy.besselj(0, t) + sympy.E * sympy.exp(t) ** 2
-    assert formula(law) == "%e*exp(2*t) + abs(t)*signum(t) + %pi*bessel_j(0, t)"
-    assert power_series(sympy.Add(sympy.Float(0), 2 * t, sympy.Float(0), evaluate=False)) == "2*t"
+    assert formula_text(law) == "%e*exp(2*t) + abs(t)*signum(t) + %pi*bessel_j(0, t)"
+    zero = {"num": "0.0e0"}
+    series = SeriesOfControls(2, 0, {"u": (zero, 2, zero)})
+    assert formula_text(series.law()["u"]) == "2*t"
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """The command about free motion: free."""
 
-from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +11,6 @@ from .group import holonom
 from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, takes, writes_json
 
 if TYPE_CHECKING:
-    from ..free_motion import FreeMotion
     from ..program.request import Request
 
 
@@ -42,10 +40,12 @@ def free(
 
     from ..crosscheck.report import Verdict
     from ..display.free_motion import show_free_motion
+    from ..formats import Publication, published
+    from ..free_document import free_motion_text
     from ..free_motion import read_free_motion, with_verdicts
 
     found = with_verdicts(read_free_motion(text))
-    present(_free_motion_document(found), json_file, show_free_motion, found)
+    present(published(Publication.FREE, free_motion_text(found)), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return DISAGREEMENT if contradicted else 0
 
@@ -54,55 +54,3 @@ def _import_readers() -> None:
     """Import SymPy and the modules of the analysis."""
     from ..display.free_motion import show_free_motion  # noqa: F401
     from ..free_motion import read_free_motion  # noqa: F401
-
-
-def _free_motion_document(found: "FreeMotion") -> dict[str, Any]:
-    from ..display.free_motion import formula, power_series
-    from ..formats import Publication, published
-    from ..free_document import (
-        ConditionText,
-        FreeMotionText,
-        LawCheck,
-        PrescribedText,
-        TrajectoryText,
-        UniversalText,
-    )
-
-    def texts(formulas: Iterable[Any]) -> tuple[str, ...]:
-        return tuple(map(formula, formulas))
-
-    def law_text(law: Mapping[str, Any]) -> dict[str, str]:
-        return dict(zip(law, texts(law.values()), strict=True))
-
-    universal, trajectory, prescribed = found.universal, found.trajectory, found.prescribed
-    laws, order = universal.laws, trajectory.order
-    content = FreeMotionText(
-        found.scene,
-        None if found.condition is None else texts(found.condition),
-        found.left_out,
-        found.motion,
-        UniversalText(
-            universal.verdict,
-            laws=tuple(law_text(law.controls) for law in laws),
-            constants=tuple(law.constants for law in laws),
-            free=tuple(law.free for law in laws),
-            positive=tuple(texts(law.positive) for law in laws),
-            checks=tuple(LawCheck(law.check.verdict, law.check.digits, law.check.points) for law in laws),
-            conditions=tuple(
-                ConditionText(formula(each.expression), formula(each.place), each.effects)
-                for each in universal.conditions
-            ),
-            generic=universal.generic,
-            reason=universal.reason,
-        ),
-        TrajectoryText(
-            trajectory.kind,
-            law=law_text(trajectory.law) or None if order is None else None,
-            series=order and {u: power_series(value) for u, value in trajectory.law.items()} | {"order": order},
-            free=trajectory.free,
-            samples=trajectory.samples or None,
-            reason=trajectory.reason,
-        ),
-        prescribed and PrescribedText(law_text(prescribed.reactions), law_text(prescribed.controls)),
-    )
-    return published(Publication.FREE, content)

@@ -5,17 +5,22 @@ from typing import TYPE_CHECKING
 
 from rich.console import Console
 from rich.text import Text
-from sympy import Expr, Function
-from sympy.printing.str import StrPrinter
 
-from ..expression import notation
-from ..expression.functions import FUNCTIONS
-from ..expression.mathjson import CONSTANT_NAMES, HEADS
+from ..expression.presentation import formula_text
+from ..free_document import law_texts
 from .condition import condition_lines
 from .motion import short_number
 
 if TYPE_CHECKING:
-    from ..free_motion import FreeMotion, Law, MotionVerdict, OpenAccelerations, UniversalControls, UniversalLaw
+    from ..free_motion import (
+        ControlCondition,
+        FreeMotion,
+        Law,
+        MotionVerdict,
+        OpenAccelerations,
+        UniversalControls,
+        UniversalLaw,
+    )
 
 
 def show_free_motion(console: Console, found: "FreeMotion") -> None:
@@ -67,19 +72,21 @@ TITLES = {
 def _show_universal(console: Console, found: "UniversalControls") -> None:
     generic = "; for generic values of the parameters left open" if found.generic else ""
     conditions = () if found.verdict == "none" else found.conditions  # without laws the reason names one
-    needed = [
-        f"needs {formula(each.expression)} = 0, at {formula(each.place)} in (10), from {', '.join(each.effects)}"
-        for each in conditions[:CONDITIONS_SHOWN]
-    ]
+    needed = [_needed(each) for each in conditions[:CONDITIONS_SHOWN]]
     more = len(conditions) - len(needed)
     rest = [f"and {more} longer conditions"] if more > 0 else []
     laws = [line for law in found.laws for line in _universal_law(law)]
     _show_list(console, TITLES[found.verdict], [*laws, found.reason + generic, *needed, *rest])
 
 
+def _needed(condition: "ControlCondition") -> str:
+    expression, place = formula_text(condition.expression), formula_text(condition.place)
+    return f"needs {expression} = 0, at {place} in (10), from {', '.join(condition.effects)}"
+
+
 def _universal_law(law: "UniversalLaw") -> list[str]:
     free = f"{', '.join(law.free)} any function of the time" if law.free else ""
-    where = " and ".join(f"{formula(each)} > 0" for each in law.positive)
+    where = " and ".join(f"{formula_text(each)} > 0" for each in law.positive)
     check = law.check
     shown = "" if check.digits is None else f" to {check.digits} digits in {check.points} random states"
     return [
@@ -126,61 +133,9 @@ def _sample(sample: Iterable[float], law: "Law") -> str:
     return "  ".join(f"{name} = {value:<12.6g}" for name, value in zip(("t", *law), sample, strict=True)).rstrip()
 
 
-def formula(expression: object) -> str:
-    """Return one line in the notation of the scene files.
-
-    Parameters
-    ----------
-    expression : SymPy expression
-        Expression of a result about free motion.
-
-    Returns
-    -------
-    str
-    """
-    return SceneNotation().doprint(expression).replace("**", "^")
-
-
-class SceneNotation(StrPrinter):
-    """SymPy's one-line notation, with Maxima's names of constants and functions."""
-
-    def _print_Function(self, call: Function) -> str:
-        name = FUNCTION_NAMES.get(HEADS.get(call.func), call.func.__name__)
-        return f"{name}({self.stringify(call.args, ', ')})"
-
-    def _print_constant(self, constant: Expr) -> str:
-        return notation.CONSTANTS[CONSTANT_NAMES[constant]]
-
-    _print_Pi = _print_Exp1 = _print_ImaginaryUnit = _print_EulerGamma = _print_constant
-
-
-FUNCTION_NAMES = {each.head: each.scene for each in FUNCTIONS}
-
-
-def power_series(value: Expr) -> str:
-    """Return a truncated series with its terms in their order.
-
-    Parameters
-    ----------
-    value : SymPy expression
-        A polynomial whose terms are in their order.
-
-    Returns
-    -------
-    str
-        ``0`` if all terms are zero.
-    """
-    terms = [formula(term) if not term.is_Add else f"({formula(term)})" for term in _terms(value)]
-    return " + ".join(terms).replace("+ -", "- ") if terms else "0"
-
-
-def _terms(value: Expr) -> list[Expr]:
-    return [term for term in (value.args if value.is_Add else (value,)) if not term.is_zero]
-
-
 def _series(law: "Law", order: int) -> str:
-    return ", ".join(f"{control} begins with {power_series(value)}, to order {order}" for control, value in law.items())
+    return ", ".join(f"{name} begins with {text}, to order {order}" for name, text in law_texts(law).items())
 
 
 def _law(law: "Law") -> str:
-    return ", ".join(f"{control} = {formula(value)}" for control, value in law.items())
+    return ", ".join(f"{name} = {text}" for name, text in law_texts(law).items())

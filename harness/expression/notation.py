@@ -141,7 +141,11 @@ def _product(tree: Tree) -> Expanded:
     under: list[Tree] = []
     for factor in tree[1:] if tree[0] == "Multiply" else [tree]:
         above, below = _fraction(factor)
-        over += [] if above == 1 else [above]
+        match above:
+            case ["Multiply", *factors]:
+                over += factors
+            case _ if above != 1:
+                over.append(above)
         under += [] if below == 1 else [below]
 
     def build(*formulas: Formula) -> Formula:

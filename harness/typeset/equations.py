@@ -9,10 +9,10 @@ from math import inf, prod
 
 from sympy import Indexed
 
+from ..expression.presentation import presented
 from ..record import Equation, Relation
-from .boxes import EQUALS, Box, aligned
-from .formula import formula_box, is_long, relation_lines, relation_rows
-from .presentation import presented
+from .boxes import EQUALS, INDENT, Box, aligned
+from .formula import formula_box, formula_lines
 from .quantities import symbol_box
 
 COLUMN_GAP = 2  # digits
@@ -71,13 +71,13 @@ def _plain_rows(relations: Sequence[Relation], width: float) -> list[str]:
     """
     sides = [(presented(relation.left), presented(relation.right)) for relation in relations]
     margins = [formula_box(left) for left, _ in sides]
-    if any(is_long(margin, width) for margin in margins):
-        return [f"& {line.latex}" for left, right in sides for line in relation_lines(left, right, width)]
     widest = max(margin.width for margin in margins)
+    if widest > width / 3:
+        return [f"& {line.latex}" for left, right in sides for line in formula_lines(["Equal", left, right], width)]
     return [
-        row
-        for (left, right), margin in zip(sides, margins, strict=True)
-        for row in relation_rows(left, right, width - widest + margin.width)
+        f"{margin.latex} &= {line.latex}" if place == 0 else rf"& {INDENT.latex} {line.latex}"
+        for (_, right), margin in zip(sides, margins, strict=True)
+        for place, line in enumerate(formula_lines(right, width - widest - EQUALS.width - INDENT.width))
     ]
 
 

@@ -1,7 +1,8 @@
 """Typeset a formula as a box, on one line or broken over several.
 
-Sums are broken before a sign, products before a factor, and everything else inside its arguments. Terms and factors
-keep the order of the tree. Trees are those of `holonom.expression.mathjson`, with additions for the paper's equations:
+Lines are broken at the top level: between sides, before the sign of a term, before a factor, and in the brackets of a
+sum that fits on no line. Terms and factors keep the order of the tree. Trees are those of
+`holonom.expression.mathjson`, with additions for the paper's equations:
 
     ["Equal", left, right], ["NotEqual", left, right], ["List", item, ...]
     ["Subscript", "f", "beta"], ["Subscript", "A_inverse", "l", "s"], ["Subscript", "christoffel", "k", "m", "s"]
@@ -15,8 +16,9 @@ keep the order of the tree. Trees are those of `holonom.expression.mathjson`, wi
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import groupby
+from itertools import chain, groupby
 from math import inf
+from typing import NamedTuple
 
 from ..expression.functions import FUNCTIONS
 from ..expression.mathjson import Tree
@@ -38,7 +40,6 @@ from .boxes import (
     WIDE_SPACE,
     Box,
     above,
-    aligned,
     below,
     beside,
     bracketed,
@@ -52,8 +53,6 @@ from .boxes import (
 )
 from .quantities import indexed_box, name_box
 
-NARROWEST = 14  # digits below which nothing is pressed
-TALLEST = 10  # lines that brackets reach over at most
 CONSTANTS = {"Pi": r"\pi", "ExponentialE": "e", "ImaginaryUnit": "i", "EulerGamma": r"\gamma"}
 NAMES = {each.head: each.operator for each in FUNCTIONS if each.latex and not each.of_an_order}
 NAMES |= {"Determinant": r"\det"}
@@ -75,6 +74,14 @@ class SignedTerm:
     sign_colour: str | None = None
 
 
+class Part(NamedTuple):
+    """A part of a formula that stays on one line."""
+
+    box: Box
+    leading: Box = NOTHING  # stands before it at the head of a line
+    between: Box = NOTHING  # stands before it elsewhere
+
+
 def formula_box(tree: Tree, room: float = inf) -> Box:
     """Typeset a formula in LaTeX's math mode.
 
@@ -94,100 +101,11 @@ def formula_box(tree: Tree, room: float = inf) -> Box:
     HolonomError
         The tree, or a part of it, is not of the kinds listed above.
     """
-    whole, width = _set(tree, inf), max(room, NARROWEST)
-    return whole if whole.width <= width else _set(tree, width)
+    return stacked(formula_lines(tree, room))
 
 
-def relation_box(left: Tree, right: Tree, room: float = inf) -> Box:
-    """Typeset left = right, broken at the equals sign if it is too wide.
-
-    The break is after the equals sign, or before it if the left side is long.
-
-    Parameters
-    ----------
-    left, right : Tree
-        Both sides, in the trees described above.
-    room : float
-        Line width, in digits.
-
-    Returns
-    -------
-    Box
-    """
-    start = formula_box(left)
-    if is_long(start, room) or beside(start, EQUALS, formula_box(right)).width <= room:
-        return stacked(relation_lines(left, right, room))
-    rows = relation_rows(left, right, room)
-    return Box(aligned(rows), room, len(rows)) if len(rows) > 1 else Box(rows[0].replace("&", "", 1), room)
-
-
-def relation_lines(left: Tree, right: Tree, room: float = inf) -> list[Box]:
-    """Return the lines of a relation, indented from the second on.
-
-    Parameters
-    ----------
-    left, right : Tree
-        Both sides.
-    room : float
-        Line width, in digits.
-
-    Returns
-    -------
-    list of Box
-        One box for each line.
-    """
-    whole = beside(formula_box(left), EQUALS, formula_box(right))
-    if whole.width <= room:
-        return [whole]
-    *rows, last = sum_lines(left, room - INDENT.width)
-    first, *others = sum_lines(right, room - EQUALS.width - INDENT.width)
-    return _set_in([*rows, *_filled([last, beside(EQUALS, first)], room - INDENT.width), *others])
-
-
-def relation_rows(left: Tree, right: Tree, room: float = inf) -> list[str]:
-    """Return the lines of a relation, aligned at the equals sign by LaTeX's &.
-
-    Its left side is short.
-
-    Parameters
-    ----------
-    left, right : Tree
-        Both sides.
-    room : float
-        Line width, in digits.
-
-    Returns
-    -------
-    list of str
-        LaTeX of each line, with ``&`` at the place to align.
-    """
-    start = formula_box(left)
-    first, *others = sum_lines(right, room - start.width - EQUALS.width - INDENT.width)
-    return [f"{start.latex} &= {first.latex}", *(f"& {row.latex}" for row in map(_indented, others))]
-
-
-def is_long(left: Box, room: float) -> bool:
-    """Return True if the left side leaves too little room for the right one.
-
-    Parameters
-    ----------
-    left : Box
-        Left side of a relation, on one line.
-    room : float
-        Line width, in digits.
-
-    Returns
-    -------
-    bool
-        True if the left side takes more than a third of the line.
-    """
-    return left.width > room / 3
-
-
-def sum_lines(tree: Tree, room: float) -> list[Box]:
+def formula_lines(tree: Tree, room: float) -> list[Box]:
     """Typeset a formula as lines below each other.
-
-    A sum has several lines if it is too wide for one.
 
     Parameters
     ----------
@@ -202,9 +120,73 @@ def sum_lines(tree: Tree, room: float) -> list[Box]:
         One box for each line.
     """
     rows: list[Box] = []
-    for place, term in enumerate(signed_terms(tree)):
-        rows = _appended(rows, _term_lines(term, place, room), room)
+    for box, leading, between in _parts(tree, room):
+        if rows and rows[-1].width + between.width + box.width <= room:
+            rows[-1] = beside(rows[-1], between, box)
+        else:
+            rows.append(beside(leading, box) if rows else box)
     return rows
+
+
+def _parts(tree: Tree, room: float) -> list[Part]:
+    """Return the parts between which a formula may be broken, one if it fits."""
+    whole = _set(tree)
+    if whole.width <= room:
+        return [Part(whole)]
+    match tree:
+        case ["Equal", left, right]:
+            rest = _after(EQUALS, _parts(right, room - EQUALS.width - INDENT.width))
+            return [*_parts(left, room), *(part._replace(leading=beside(INDENT, part.leading)) for part in rest)]
+        case ["List", *items]:
+            *rows, last = (_parts(item, room - COMMA.width) for item in items)
+            return [*(part for row in rows for part in _before(row, COMMA, WIDE_SPACE)), *last]
+        case _ if _is_sum(tree):
+            return [part for place, term in enumerate(signed_terms(tree)) for part in _term_parts(term, place, room)]
+        case ["Divide", 1, ["Multiply", *divisors]]:
+            return _product_parts([["Divide", 1, divisor] for divisor in divisors], room)
+        case ["Divide", numerator, denominator] if numerator != 1:
+            factors = numerator[1:] if _head(numerator) == "Multiply" else [numerator]
+            return _product_parts([["Divide", 1, denominator], *factors], room)
+        case ["Multiply", *factors]:
+            return _product_parts(factors, room)
+        case ["Marked", colour, inner]:
+            return [part._replace(box=coloured(part.box, colour)) for part in _parts(inner, room)]
+        case _:
+            return [Part(whole)]
+
+
+def _after(box: Box, parts: Sequence[Part]) -> list[Part]:
+    """Return parts with a box before the first."""
+    return [Part(beside(box, parts[0].box)), *parts[1:]]
+
+
+def _before(parts: Sequence[Part], *boxes: Box) -> list[Part]:
+    """Return parts with boxes after the last."""
+    return [*parts[:-1], parts[-1]._replace(box=beside(parts[-1].box, *boxes))]
+
+
+def _term_parts(term: SignedTerm, place: int, room: float) -> list[Part]:
+    sign = _sign(term, place)
+    return _after(sign, _factor_parts(term.content, room - sign.width))
+
+
+def _product_parts(factors: Sequence[Tree], room: float) -> list[Part]:
+    room -= CROSS.width
+    found: list[Part] = []
+    for factor, separator in zip(factors, _separators(factors, list(map(_factor, factors))), strict=True):
+        first, *others = _factor_parts(factor, room)
+        found += [first._replace(leading=CROSS, between=separator), *others]
+    return found
+
+
+def _factor_parts(tree: Tree, room: float) -> list[Part]:
+    """Return the parts of a term or factor. A sum has brackets."""
+    if not _is_sum(tree):
+        return _parts(tree, room)
+    whole = _factor(tree)
+    if whole.width <= room:
+        return [Part(whole)]
+    return _before(_after(OPENING, _parts(tree, room - OPENING.width - CLOSING.width)), CLOSING)
 
 
 def signed_terms(tree: Tree) -> list[SignedTerm]:
@@ -251,72 +233,6 @@ def _sign(term: SignedTerm, place: int) -> Box:
     return coloured(mark, term.sign_colour) if term.sign_colour else mark
 
 
-def _term_lines(term: SignedTerm, place: int, room: float) -> list[Box]:
-    """Return the lines of a term.
-
-    It has several if it is a product to be broken or its brackets would be too high.
-    """
-    sign = _sign(term, place)
-    first, *others = _factor_lines(term.content, room - sign.width)
-    if others or first.height <= TALLEST:
-        return _set_in([beside(sign, first), *others])
-    before, inner, after = _around_brackets(term.content)
-    if inner is None:
-        return [beside(sign, first)]
-    start = beside(sign, _factor(before, room), OPENING)
-    *others, last = sum_lines(inner, room - INDENT.width - CLOSING.width)
-    end = beside(last, CLOSING, *(_factor(factor, room / 2) for factor in after))
-    return _set_in(_filled([start, *others, end], room))
-
-
-def _around_brackets(term: Tree) -> tuple[Tree, Tree | None, list[Tree]]:
-    """Return the parts of a term before, inside and after its longest brackets.
-
-    The brackets are those of the longest sum among its factors.
-    """
-    match term:
-        case ["Divide", ["Multiply", *factors], denominator]:
-            factors = [["Divide", 1, denominator], *factors]
-        case ["Divide", numerator, denominator]:
-            factors = [["Divide", 1, denominator], numerator]
-        case ["Multiply", *factors]:
-            pass
-        case _:
-            return term, None, []
-    sums = [place for place, factor in enumerate(factors) if _is_sum(factor) and place]
-    if not sums:
-        return term, None, []
-    longest = max(sums, key=lambda place: formula_box(factors[place]).width)
-    return ["Multiply", *factors[:longest]], factors[longest], factors[longest + 1 :]
-
-
-def _set_in(rows: Sequence[Box]) -> list[Box]:
-    """Return lines, indented from the second on."""
-    return [rows[0], *map(_indented, rows[1:])]
-
-
-def _indented(row: Box) -> Box:
-    return beside(INDENT, row)
-
-
-def _filled(boxes: Sequence[Box], room: float) -> list[Box]:
-    """Return lines of boxes side by side, each as full as the room allows."""
-    rows: list[Box] = []
-    for box in boxes:
-        rows = _appended(rows, [box], room)
-    return rows
-
-
-def _appended(rows: list[Box], more: list[Box], room: float) -> list[Box]:
-    """Append lines to lines.
-
-    A single line joins the last one if there is room.
-    """
-    if rows and len(more) == 1 and rows[-1].width + more[0].width <= room:
-        return [*rows[:-1], beside(rows[-1], more[0])]
-    return [*rows, *more]
-
-
 def _head(tree: Tree) -> str | None:
     """Return the head of a tree, without its mark."""
     return tree[0] if isinstance(tree, list) else None
@@ -335,22 +251,24 @@ def _is_loose(tree: Tree) -> bool:
     return _is_sum(tree) or _head(_content(tree)) in LOOSE
 
 
-def _set(tree: Tree, room: float) -> Box:
+def _set(tree: Tree) -> Box:
+    """Typeset a formula on one line."""
     match tree:
         case str():
             return word(CONSTANTS[tree], 1) if tree in CONSTANTS else name_box(tree)
         case _ if _is_sum(tree):
-            return stacked(sum_lines(tree, room))
+            terms = enumerate(signed_terms(tree))
+            return beside(*(box for k, term in terms for box in (_sign(term, k), _factor(term.content))))
         case int():
             return digits(str(tree))
         case {"num": str(number)}:
             return _decimal(number)
         case [str(head), *parts] if head in SETTERS:
-            return SETTERS[head](room, *parts)
+            return SETTERS[head](*parts)
         case [str(head), *arguments] if head in NAMES:
-            return _function(word(NAMES[head], 3), arguments, room)
+            return _function(word(NAMES[head], 3), arguments)
         case [str(head), order, argument] if head in OF_AN_ORDER:
-            return _of_an_order(OF_AN_ORDER[head], order, argument, room)
+            return _of_an_order(OF_AN_ORDER[head], order, argument)
         case _:
             raise _refusal(tree)
 
@@ -369,47 +287,23 @@ def _decimal(number: str) -> Box:
 # ---- products, fractions, powers, functions ----------------------------------------------------------
 
 
-def _factor(tree: Tree, room: float) -> Box:
-    if _is_sum(tree):
-        return bracketed(formula_box(tree, room - 2))
-    return formula_box(tree, room)
+def _factor(tree: Tree) -> Box:
+    return bracketed(_set(tree)) if _is_sum(tree) else _set(tree)
 
 
-def _factor_lines(tree: Tree, room: float) -> list[Box]:
-    whole = _factor(tree, inf)
-    if whole.width <= room:
-        return [whole]
-    return _product_lines(tree[1:], room) if _head(tree) == "Multiply" else [_factor(tree, room)]
+def _product(*factors: Tree) -> Box:
+    boxes = list(map(_factor, factors))
+    return beside(*chain.from_iterable(zip(_separators(factors, boxes), boxes, strict=True)))
 
 
-def _product(room: float, *factors: Tree) -> Box:
-    return stacked(_product_lines(factors, room))
-
-
-def _product_lines(factors: Sequence[Tree], room: float) -> list[Box]:
-    """Return the lines of a product.
-
-    It stays on one line if breaking its widest factor leaves enough room. Else it is broken before factors.
-    """
-    boxes = [_factor(factor, inf) for factor in factors]
-    widest = max(range(len(boxes)), key=lambda place: boxes[place].width)
-    rest = sum(box.width for box in boxes) - boxes[widest].width
-    if rest + min(NARROWEST, boxes[widest].width) <= room:
-        boxes[widest] = _factor(factors[widest], room - rest)
-        return [_joined(factors, boxes)]
-    first, *others = _filled([_factor(factor, room - CROSS.width) for factor in factors], room - CROSS.width)
-    return [first, *(beside(CROSS, row) for row in others)]
-
-
-def _joined(factors: Sequence[Tree], boxes: Sequence[Box]) -> Box:
-    apart = [_stands_apart(factor, box) for factor, box in zip(factors, boxes, strict=True)]
-    parts = [boxes[0]]
+def _separators(factors: Sequence[Tree], boxes: Sequence[Box]) -> list[Box]:
+    """Return what stands before each factor of a product on one line."""
+    apart = list(map(_stands_apart, factors, boxes))
+    found = [NOTHING]
     for place, factor in enumerate(factors[1:], start=1):
-        space = (
-            THIN_SPACE if apart[place - 1] or (apart[place] and not _begins_with_digit(factors[place - 1])) else NOTHING
-        )
-        parts += [TIMES if _begins_with_digit(factor) else space, boxes[place]]
-    return beside(*parts)
+        spaced = apart[place - 1] or (apart[place] and not _begins_with_digit(factors[place - 1]))
+        found.append(TIMES if _begins_with_digit(factor) else THIN_SPACE if spaced else NOTHING)
+    return found
 
 
 def _begins_with_digit(tree: Tree) -> bool:
@@ -426,63 +320,63 @@ def _stands_apart(tree: Tree, box: Box) -> bool:
     return box.height > 1 or _head(_content(tree)) in NAMES or r"\text{" in box.latex
 
 
-def _fraction(room: float, numerator: Tree, denominator: Tree) -> Box:
-    return over(formula_box(numerator, room), formula_box(denominator, room))
+def _fraction(numerator: Tree, denominator: Tree) -> Box:
+    return over(_set(numerator), _set(denominator))
 
 
-def _root(room: float, radicand: Tree) -> Box:
-    return root(formula_box(radicand, room - 2))
+def _root(radicand: Tree) -> Box:
+    return root(_set(radicand))
 
 
-def _power(room: float, base: Tree, exponent: Tree) -> Box:
-    raised = formula_box(exponent)
+def _power(base: Tree, exponent: Tree) -> Box:
+    raised = _set(exponent)
     match base:
         case [str(head), argument] if head in NAMES:
-            return _function(above(word(NAMES[head], 3), raised), [argument], room)
+            return _function(above(word(NAMES[head], 3), raised), [argument])
         case _ if _is_loose(base):
-            return above(bracketed(formula_box(base, room - 2 - raised.width)), raised)
+            return above(bracketed(_set(base)), raised)
         case _:
-            return above(formula_box(base, room), raised)
+            return above(_set(base), raised)
 
 
-def _exponential(room: float, exponent: Tree) -> Box:
-    return above(word("e", 1), formula_box(exponent, room))
+def _exponential(exponent: Tree) -> Box:
+    return above(word("e", 1), _set(exponent))
 
 
-def _function(name: Box, arguments: Sequence[Tree], room: float) -> Box:
-    inner = separated([formula_box(argument, room - name.width - 2) for argument in arguments], COMMA)
+def _function(name: Box, arguments: Sequence[Tree]) -> Box:
+    inner = separated([_set(argument) for argument in arguments], COMMA)
     if len(arguments) == 1 and isinstance(_content(arguments[0]), str):
         return beside(name, inner)
     return beside(name, bracketed(inner))
 
 
-def _of_an_order(letter: str, order: Tree, argument: Tree, room: float) -> Box:
+def _of_an_order(letter: str, order: Tree, argument: Tree) -> Box:
     """Return a function that has its order as an index, with a bracketed argument."""
-    name = below(word(letter, 1), formula_box(order))
-    return beside(name, bracketed(formula_box(argument, room - name.width - 2)))
+    name = below(word(letter, 1), _set(order))
+    return beside(name, bracketed(_set(argument)))
 
 
-def _modulus(room: float, argument: Tree) -> Box:
-    return bracketed(formula_box(argument, room - 2), r"\lvert", r"\rvert")
+def _modulus(argument: Tree) -> Box:
+    return bracketed(_set(argument), r"\lvert", r"\rvert")
 
 
-def _factorial(_: float, argument: Tree) -> Box:
+def _factorial(argument: Tree) -> Box:
     return beside(_tight(argument), FACTORIAL)
 
 
 def _tight(tree: Tree) -> Box:
-    return bracketed(formula_box(tree)) if _is_loose(tree) else formula_box(tree)
+    return bracketed(_set(tree)) if _is_loose(tree) else _set(tree)
 
 
 # ---- the language of the general equations -------------------------------------------------------------
 
 
-def _subscript(_: float, name: str, *indices: Tree) -> Box:
-    return indexed_box(name, list(map(formula_box, indices)))
+def _subscript(name: str, *indices: Tree) -> Box:
+    return indexed_box(name, list(map(_set, indices)))
 
 
 def _dotted(dots: int) -> Callable[..., Box]:
-    return lambda _, inner: _under_dots(dots, inner)
+    return lambda inner: _under_dots(dots, inner)
 
 
 def _under_dots(dots: int, inner: Tree) -> Box:
@@ -490,16 +384,16 @@ def _under_dots(dots: int, inner: Tree) -> Box:
         case str(name):
             return name_box(name, dots)
         case ["Subscript", str(name), *indices]:
-            return indexed_box(name, list(map(formula_box, indices)), dots)
+            return indexed_box(name, list(map(_set, indices)), dots)
         case ["Marked", colour, marked]:
             return coloured(_under_dots(dots, marked), colour)
         case _:
             raise _refusal(inner)
 
 
-def _partial(_: float, quantity: Tree, *variables: Tree) -> Box:
+def _partial(quantity: Tree, *variables: Tree) -> Box:
     """Return a partial derivative, with powers for equal adjacent variables."""
-    orders = [(formula_box(variable), len(list(same))) for variable, same in groupby(variables)]
+    orders = [(_set(variable), len(list(same))) for variable, same in groupby(variables)]
     divisor = [part for variable, order in orders for part in (PARTIAL, _to_the(order, variable))]
     return over(beside(_to_the(len(variables), PARTIAL), _tight(quantity)), beside(*divisor))
 
@@ -508,30 +402,29 @@ def _to_the(order: int, box: Box) -> Box:
     return box if order == 1 else above(box, digits(str(order)))
 
 
-def _rate(_: float, quantity: Tree) -> Box:
-    inner = formula_box(quantity)
+def _rate(quantity: Tree) -> Box:
+    inner = _set(quantity)
     return beside(over(TOTAL, beside(TOTAL, TIME)), bracketed(inner) if _is_sum(quantity) else inner)
 
 
-def _applied(room: float, function: Tree, *arguments: Tree) -> Box:
-    return beside(formula_box(function), bracketed(separated(list(map(formula_box, arguments)), COMMA)))
+def _applied(function: Tree, *arguments: Tree) -> Box:
+    return beside(_set(function), bracketed(separated(list(map(_set, arguments)), COMMA)))
 
 
-def _marked(room: float, colour: str, inner: Tree) -> Box:
-    return coloured(formula_box(inner, room), colour)
+def _marked(colour: str, inner: Tree) -> Box:
+    return coloured(_set(inner), colour)
 
 
-def _list(room: float, *items: Tree) -> Box:
-    boxes = [formula_box(item, room) for item in items]
-    return stacked(_filled([*(beside(box, COMMA, WIDE_SPACE) for box in boxes[:-1]), boxes[-1]], room))
+def _list(*items: Tree) -> Box:
+    return separated(map(_set, items), COMMA, WIDE_SPACE)
 
 
-def _equation(room: float, left: Tree, right: Tree) -> Box:
-    return relation_box(left, right, room)
+def _equation(left: Tree, right: Tree) -> Box:
+    return beside(_set(left), EQUALS, _set(right))
 
 
-def _condition(room: float, left: Tree, right: Tree) -> Box:
-    return beside(formula_box(left, room), UNEQUAL, formula_box(right))
+def _condition(left: Tree, right: Tree) -> Box:
+    return beside(_set(left), UNEQUAL, _set(right))
 
 
 SETTERS: dict[str, Callable[..., Box]] = {

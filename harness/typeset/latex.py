@@ -8,9 +8,9 @@ from math import inf
 from sympy import Expr
 
 from ..expression.mathjson import Tree
+from ..expression.presentation import presented
 from ..record import Relation
-from .formula import formula_box, relation_box
-from .presentation import presented
+from .formula import formula_box
 
 MISPRINT, CORRECTION = "misprint", "correction"  # colours that a document defines
 
@@ -54,7 +54,7 @@ def latex_relation(relation: Relation, width: float = inf) -> str:
     str
         LaTeX without delimiters of math mode.
     """
-    return relation_box(presented(relation.left), presented(relation.right), width).latex
+    return formula_box(["Equal", presented(relation.left), presented(relation.right)], width).latex
 
 
 def latex_tree(tree: Tree, width: float = inf) -> str:

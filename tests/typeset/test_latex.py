@@ -10,11 +10,11 @@ from reading import letter, sides
 from refusing import failing
 from sympy import Float, Function, Indexed, IndexedBase, Rational, Symbol, cos, exp, lambdify, sin, sqrt, symbols
 
+from holonom.expression.presentation import presented
 from holonom.failures import ErrorKind
 from holonom.record import Record, Relation, derived_record
 from holonom.typeset.formula import formula_box
 from holonom.typeset.latex import latex, latex_relation, latex_tree
-from holonom.typeset.presentation import presented
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 x, y, q1, u, t, m = symbols("x y q1 u t m", real=True)

@@ -9,8 +9,10 @@ from collections.abc import Sequence
 import sympy
 from sympy import Add, Expr, Float, Indexed, Integer, Mul, Number, Pow, Rational, S, Symbol
 
-from ..expression.mathjson import CONSTANT_NAMES, HEADS, Tree
 from ..failures import ErrorKind, HolonomError
+from .mathjson import CONSTANT_NAMES, HEADS
+from .notation import scene_text
+from .trees import Tree
 
 TIME = Symbol("t", real=True)
 READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Pow, Add)  # of factors
@@ -40,6 +42,22 @@ def presented(expression: Expr) -> Tree:
         return ["Add", *map(presented, _positive_first(sorted(expression.as_ordered_terms(), key=_power_of_time)))]
     sign, tree = _signed(expression)
     return ["Negate", tree] if sign < 0 else tree
+
+
+def formula_text(expression: Expr) -> str:
+    """Return an expression in reading order, in the notation of scene files.
+
+    Parameters
+    ----------
+    expression : Expr
+        As for `presented`.
+
+    Returns
+    -------
+    str
+        One line.
+    """
+    return scene_text(presented(expression))
 
 
 def _power_of_time(term: Expr) -> tuple[bool, Expr]:
