@@ -65,4 +65,5 @@ def motion(
     problem = replace(motion_problem(file, Request(scene, settings=dict(settings)), limits), observe=SHOWN)
     simulation = simulate(problem, SimulationRequest(until=until, samples=SAMPLES))
     film = film_of(simulation, drawing_at_any_time(problem)) if problem.drawing else None
-    return Motion(problem.system, problem.source, problem.title, film, replace(simulation, velocities={}))
+    system = problem.system
+    return Motion(system.title, system.source or "", problem.title, film, replace(simulation, velocities={}))
