@@ -297,7 +297,7 @@ def _product(*factors: Tree) -> Box:
 
 
 def _separators(factors: Sequence[Tree], boxes: Sequence[Box]) -> list[Box]:
-    """Return what stands before each factor of a product on one line."""
+    """Return the separator before each factor of a product."""
     apart = list(map(_stands_apart, factors, boxes))
     found = [NOTHING]
     for place, factor in enumerate(factors[1:], start=1):
