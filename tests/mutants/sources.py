@@ -32,6 +32,11 @@ class Function:
     def body(self) -> str:
         return read(self.path)[self.start : self.end]
 
+    @property
+    def head(self) -> str:
+        """A definition of Maxima up to its body."""
+        return re.search(rf"{re.escape(self.name)}\([^()]*\)\s*:=$", read(self.path)[: self.start])[0]
+
     @cached_property
     def words(self) -> frozenset[str]:
         return frozenset(re.findall(r"[\w%?*+<>=-]+" if self.language == "lisp" else r"[\w%?]+", self.body))
