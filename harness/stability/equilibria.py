@@ -20,6 +20,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
@@ -129,7 +130,8 @@ class Equilibria(Documented, Shown):
         Euler parameters of each body: both signs are the same orientation.
     count : int or None
         Number of real solutions up to turns and signs, by a Groebner basis and Hermite's form. None if the equations
-        are not polynomial, too large, or have infinitely many complex solutions.
+        are not polynomial, too large, or have infinitely many complex solutions, or if redundant constraints may leave
+        out solutions.
 
     Examples
     --------
@@ -323,16 +325,32 @@ class _Search:
         Solutions that are not isolated, with the same multipliers and stiffnesses, count as one family.
         """
         known: list[_Solution] = []
-        more = singular = 0
+        more, places = self._collect(starts, same, known)
+        alternatives: dict[tuple[int, ...], list[Vector]] = {tuple(self._independent): []}
+        for q in places:
+            alternatives.setdefault(self._most_independent(q), []).append(q)
+        singular = len(alternatives.pop(tuple(self._independent)))
+        for chosen, near in alternatives.items():
+            further, places = self._by(chosen)._collect(np.column_stack(near), same, known)
+            more, singular = more + further, singular + len(places)
+        known.sort(key=lambda each: tuple(np.round(each.q / self._sizes, 6)))
+        return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more, singular
+
+    def _collect(self, starts: Matrix, same: Equivalence, known: "list[_Solution]") -> tuple[int, list[Vector]]:
+        """Add the equilibria found from the starts.
+
+        Return the number of further ones of families, and singular ones.
+        """
+        more, singular = 0, []
         for q, multipliers in filter(self._satisfies_all_constraints, self._solved(starts)):
             q = same.chosen(q)
             if any(self._close(q, other.q, same) for other in known):
                 continue
             stiffness = self._stiffness(q, multipliers)
             if stiffness is None:
-                singular += 1
+                singular.append(q)
                 continue
-            found = _Solution(q, multipliers, *stiffness)
+            found = _Solution(self._problem, q, multipliers, *stiffness)
             if not found.isolated and not self._is_zero_nearby(found):
                 continue
             if (place := self._unresolved(found, known, same)) is not None:
@@ -342,8 +360,25 @@ class _Search:
                 more += 1
             else:
                 known.append(found)
-        known.sort(key=lambda each: tuple(np.round(each.q / self._sizes, 6)))
-        return tuple(self._equilibrium(f"e{k}", each) for k, each in enumerate(known, start=1)), more, singular
+        return more, singular
+
+    def _most_independent(self, q: Vector) -> tuple[int, ...]:
+        """Return the most independent constraints at a place, if some are redundant."""
+        if len(self._independent) == len(self._equations.multipliers) or self._equations.servo:
+            return tuple(self._independent)
+        J = self._all_constraints(q, np.zeros(len(self._equations.multipliers)))["constraint_by_q"] * self._sizes
+        order = scipy.linalg.qr((J / or_one(np.linalg.norm(J, axis=1))[:, None]).T, mode="r", pivoting=True)[1]
+        return tuple(sorted(map(int, order[: len(self._independent)])))
+
+    def _by(self, independent: Sequence[int]) -> "_Search":
+        """Return the search by other independent constraints.
+
+        The motion program, which solves for other multipliers, is not evaluated.
+        """
+        multipliers = self._problem.multipliers
+        others = tuple(each for beta, each in enumerate(multipliers) if beta not in independent)
+        problem = replace(self._problem, motion=replace(self._problem.motion, redundant=others))
+        return _Search(problem, self._equations, self._controls[: len(self._equations.controls)])
 
     def _satisfies_all_constraints(self, solution: tuple[Vector, Vector]) -> bool:
         """Return True if all constraints hold.
@@ -364,7 +399,7 @@ class _Search:
         return self._equations.at(self._point(q, multipliers), range(len(multipliers)))
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
-        linear = linearized(self._problem, self._equations, self._point(found.q, found.multipliers))
+        linear = linearized(found.problem, self._equations, self._point(found.q, found.multipliers))
         return Equilibrium(
             name,
             dict(zip(self._equations.coordinates, map(float, found.q), strict=True)),
@@ -535,6 +570,7 @@ class _Search:
 
 
 class _Solution(NamedTuple):
+    problem: MotionProblem  # with the independent constraints whose multipliers are given
     q: Vector
     multipliers: Vector
     stiffness: Matrix

@@ -18,8 +18,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
-from itertools import pairwise, product
-from math import prod
+from itertools import chain, combinations, pairwise, product
+from math import comb, prod
 from typing import Any
 
 import sympy
@@ -133,23 +133,66 @@ def solve_exactly(
     Returns
     -------
     RealSolutions or None
-        None if the equations are not polynomial, or too large, or have infinitely many complex solutions.
+        None if the equations are not polynomial, or too large, or have infinitely many complex solutions, or if the
+        constraints taken for independent are not known to be so at all states: others have other solutions there.
     """
-    polynomials = _equations_at_rest(equations, independent, controls)
-    if not polynomials or prod(max(map(sum, each.itermonoms())) for each in polynomials) > SOLUTIONS:
+    others = [beta for beta in range(len(equations.multipliers)) if beta not in independent]
+    rest, constraints, gradients = _polynomials(equations, independent, controls, others)
+    polynomials = [*rest, *constraints]
+    if not polynomials or not _are_small(polynomials):
+        return None
+    if others and not _replaceable(others, independent, constraints, gradients):
         return None
     basis = groebner(polynomials, polynomials[0].ring)
     standard = _standard_monomials(basis)
     return None if standard is None else RealSolutions(_count_real_zeros(basis, standard), basis, standard)
 
 
-def _equations_at_rest(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
-) -> list[PolyElement] | None:
-    """Return the polynomials that vanish at rest, or None if one is not a polynomial."""
-    rows = {f"equation[{k}]" for k in range(1, len(equations.coordinates) + 1)}
-    rows |= {f"constraint[{beta}]" for beta in range(1, len(equations.multipliers) + 1)}
-    program = computing(equations.program, rows)
+def _are_small(polynomials: Sequence[Any]) -> bool:
+    if any(each is UNDEFINED for each in polynomials):
+        return False
+    return prod(max(map(sum, each.itermonoms())) for each in polynomials) <= SOLUTIONS
+
+
+def _replaceable(
+    others: Sequence[int],
+    independent: Sequence[int],
+    constraints: Sequence[PolyElement],
+    gradients: Sequence[Sequence[Any]],
+) -> bool:
+    """Return True if gradients depend on independent ones wherever f = 0.
+
+    The minors of these have no common zero there, and with one more all minors vanish. False also if that is not known.
+    """
+    n = len(gradients[0])
+    if comb(n, len(independent)) > SOLUTIONS or any(each is UNDEFINED for row in gradients for each in row):
+        return False
+    chosen, ring = [gradients[beta] for beta in independent], gradients[0][0].ring
+    basis = groebner(constraints, ring)
+    return groebner([*constraints, *_minors(chosen, ring)], ring) == [ring.one] and not any(
+        minor.rem(basis) for beta in others for minor in _minors([*chosen, gradients[beta]], ring)
+    )
+
+
+def _minors(rows: Sequence[Sequence[PolyElement]], ring: PolyRing) -> list[PolyElement]:
+    """Return the largest minors that are not zero identically, but for their signs."""
+    squares = ([[row[k] for k in columns] for row in rows] for columns in combinations(range(len(rows[0])), len(rows)))
+    found = (DomainMatrix(each, (len(rows), len(rows)), ring.to_domain()).charpoly()[-1] for each in squares)
+    return [each for each in found if each]
+
+
+def _polynomials(
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float], others: Sequence[int]
+) -> tuple[list[Any], list[Any], list[list[Any]]]:
+    """Return r and f at rest, and the gradients of f if there are other constraints.
+
+    Zeros are left out of r and f. What is not a polynomial is `UNDEFINED`.
+    """
+    n, g = len(equations.coordinates), len(equations.multipliers)
+    forces = [f"equation[{k}]" for k in range(1, n + 1)]
+    constraints = [f"constraint[{beta}]" for beta in range(1, g + 1)]
+    gradients = [[f"constraint_by_q[{beta},{k}]" for k in range(1, n + 1)] for beta in range(1, g + 1)]
+    program = computing(equations.program, {*forces, *constraints, *(chain(*gradients) if others else ())})
     angles = _angles(program, equations.coordinates)
     plain = [
         *(name for name in equations.coordinates if name not in angles),
@@ -157,17 +200,19 @@ def _equations_at_rest(
     ]
     unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ANGLE.values())]
     if not 0 < len(unknowns) <= UNKNOWNS:
-        return None
+        return [], [], []
     polynomials, *generators = ring(unknowns, QQ, grevlex)
     inputs = dict.fromkeys(program.inputs, polynomials.zero) | dict(zip(unknowns, generators, strict=True))
     inputs |= dict.fromkeys(angles, UNDEFINED)
     values = (polynomials(QQ(*Fraction(value).as_integer_ratio())) for value in controls)
     inputs |= dict(zip(equations.controls, values, strict=True))
-    found = list(run_program(_with_angles(program, angles), inputs, _arithmetic(polynomials)).values())
-    if any(each is UNDEFINED for each in found):
-        return None
-    found += [inputs[f"cos({name})"] ** 2 + inputs[f"sin({name})"] ** 2 - 1 for name in angles]
-    return [each for each in found if each]
+    found = run_program(_with_angles(program, angles), inputs, _arithmetic(polynomials))
+    circles = [inputs[f"cos({name})"] ** 2 + inputs[f"sin({name})"] ** 2 - 1 for name in angles]
+    return (
+        [found[name] for name in forces if found.get(name)],
+        [found[name] for name in constraints if found.get(name)] + circles,
+        [[found.get(name, polynomials.zero) for name in row] for row in gradients],
+    )
 
 
 def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:

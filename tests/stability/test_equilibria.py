@@ -414,3 +414,24 @@ s : holonomic_scene(system, parameter_values = [m = {mass}], initial_state = [a 
     found = scene.equilibria()
     assert {(each.stability, each.isolated) for each in found} == {(Stability.UNDECIDED, False)}
     assert all(set(each.multipliers.values()) == {0.0} for each in found)
+
+
+TWICE = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, z], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2,
+  potential_energy = 9*y + x - z, constraints = [%s])$
+s : holonomic_scene(system, initial_state = [x = 3/5, y = 4/5, z = 3/5, dot(x) = 0], time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize(
+    ("constraints", "count"),
+    [("x^2 + y^2 - 1, z^2 + y^2 - 1, x - z", None), ("x - z, x^2 + y^2 - 1, z^2 + y^2 - 1", 2)],
+)
+def test_equilibria_were_none_where_the_first_constraints_depend_on_each_other(write_scene, constraints, count):
+    """Truth: 9 y along the circle x = z; both circles have the same gradient at its equilibria."""
+    found = holonom.load(write_scene(TWICE % constraints)).equilibria()
+    assert [(round(each.coordinates["y"], 9), each.stability) for each in found] == [
+        (-1, Stability.STABLE),
+        (1, Stability.UNSTABLE),
+    ]
+    assert found.count == count
+    assert found.singular == 0
