@@ -14,7 +14,8 @@ working directory; another Lisp than GCL saves none."
           (mfuncall '$load "stringproc")      ; which Maxima looks for and interprets when its first function is called
           (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
           (mapc #'load jobs)
-          (ignore-errors (compile-in-two-files (directory (concatenate 'string library "/*/*.lisp")) jobs))
+          (ignore-errors (compile-in-two-files (directory (concatenate 'string library "/*/*.lisp"))
+                                               (append (directory (concatenate 'string library "/*.lisp")) jobs)))
           (setq *maxima-started* nil *asked-for* nil)
           (si::gbc t)
           (si::save-system "image"))

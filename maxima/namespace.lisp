@@ -27,14 +27,18 @@
 (defvar *read-names* (make-hash-table :test 'eq) "What each name of the library is read as.")
 (defvar *steps* nil "The calls of public steps, each as its definition begins: ((name) a b ((mlist) c)).")
 (defvar *namespace-open* nil "Whether everything is read as the library's files are.")
+(defvar *maxima-package* (find-package :maxima))
 (defvar *loaded-from* nil "The lists of files that are loaded, the latest first: (files . directory).")
 (defvar *asked-for* nil "Whether a file has loaded the library: it may be there before, in an image.")
 
-;; GCL 2.7.1, of Debian 13, prints no byte of a symbol's name beyond ASCII.
-(let ((name (string (code-char 184))) (printed #'print-invert-case))
-  (unless (string= (funcall printed (intern name)) name)
-    (defun print-invert-case (x)
-      (if (symbolp x) (maybe-invert-string-case (symbol-name x)) (funcall printed x)))))
+;; Maxima orders symbols by the characters that it prints of them, and so all that it simplifies. GCL prints a symbol
+;; slower, and into more memory, than it takes to look at its name; GCL 2.7.1, of Debian 13, prints ASCII alone.
+#+gcl (defvar *printed-by-maxima* #'print-invert-case)
+#+gcl
+(defun print-invert-case (x)
+  (if (and (symbolp x) (eq (symbol-package x) *maxima-package*))
+      (maybe-invert-string-case (symbol-name x))
+      (funcall *printed-by-maxima* x)))
 
 (defun note (name table kind)
   (if (maxima-name-p name) (unless (gethash name table) (setf (gethash name table) kind))))
@@ -89,7 +93,7 @@
 
 (defun characters-of-name (name)
   "As the user writes it: Maxima reads  lambda  and  go  as symbols of its own, without the sign before names."
-  (let ((characters (print-invert-case (plain-name (or (get name 'reversealias) name)))))
+  (let ((characters (maybe-invert-string-case (symbol-name (plain-name (or (get name 'reversealias) name))))))
     (if (member (char characters 0) '(#\$ #\%)) (subseq characters 1) characters)))
 
 (defun read-name (name)

@@ -33,7 +33,6 @@
 
 (defstruct term coefficient node)
 (defstruct factor node exponent)
-(defvar *hash-mask* (1- (expt 2 40)))
 (defmvar $expression_graph nil)
 
 (defun $new_expression_graph (variables)
@@ -61,9 +60,11 @@
 ;; Lisps hash a list by its first items at most, which are the same for all sums 1 - x, 1 - y, ...
 (defun hash-of (description)
   (let ((hash 0))
+    (declare (type (unsigned-byte 40) hash))
     (dolist (item description hash)
       (let ((own (if (typep item 'fixnum) item (sxhash item))))
-        (setq hash (logand *hash-mask* (+ (* 31 hash) (logand *hash-mask* own))))))))
+        (declare (fixnum own))
+        (setq hash (logand #xFFFFFFFFFF (+ (* 31 hash) (logand #xFFFFFFFFFF own))))))))
 
 ;;; ---- numbers and symbols ---------------------------------------------------------------
 
@@ -96,7 +97,7 @@
 
 (defun with-numbers-together (terms)
   "2*(x + 1) + 3 as 2*x + 2 + 3: sums that contain a number are opened where numbers meet."
-  (if (member-if #'contains-number-p (cdr (member-if #'contains-number-p terms)))
+  (if (more-than-one-p #'contains-number-p terms)
       (mapcan #'(lambda (term)
                   (if (and (contains-number-p term) (not (number-term-p term)))
                       (multiples (term-coefficient term) (node-parts (term-node term)))

@@ -8,8 +8,12 @@
 
 (in-package :maxima)
 
-(defun any-of-p (test items) (if (member-if test items) t nil))
-(defun all-of-p (test items) (not (member-if-not test items)))
+(defun any-of-p (test items) (dolist (item items) (if (funcall test item) (return t))))
+(defun all-of-p (test items) (dolist (item items t) (if (not (funcall test item)) (return nil))))
+
+(defun more-than-one-p (test items)
+  (let ((met nil))
+    (dolist (item items) (if (funcall test item) (if met (return t) (setq met t))))))
 
 (defun sum-of-all (numbers) (let ((sum 0)) (dolist (number numbers sum) (incf sum number))))
 
@@ -80,6 +84,10 @@
   "x_0, a name that is made once."
   (or (get x 'initial) (setf (get x 'initial) ($name_around "" x "_0"))))
 
+(defun $with_initial_names (items)
+  "x_0 = value for each  x = value."
+  (mlist-of (mapcar #'(lambda (item) (list '(mequal simp) ($initial (second item)) (third item))) (cdr items))))
+
 ;;; Tables, by which a name is found at once however many there are: of  name = value, and of names.
 
 (defun $table_of_values (items) (table-of (mapcar #'second (cdr items)) (mapcar #'third (cdr items))))
@@ -89,6 +97,13 @@
   (let ((table (mfuncall '$make_array '$hashed 1)))
     (mapc #'(lambda (name value) (setf (gethash name table) value)) names values)
     table))
+
+(defun $kinds_of_names (moving constant)
+  "A table of the names, moving or constant; the time is constant."
+  (let ((constant (cons '$t (cdr constant))))
+    (table-of (append constant (cdr moving))
+              (nconc (make-list (length constant) :initial-element '$constant)
+                     (make-list (length (cdr moving)) :initial-element '$moving)))))
 
 (defun $values_in (table names) (mlist-of (mapcar #'(lambda (name) (gethash name table)) (cdr names))))
 (defun $names_inside (table names) (mlist-of (remove-if-not #'(lambda (name) (gethash name table)) (cdr names))))
@@ -112,7 +127,7 @@
 
 (defun $repeated_items (items)
   "The atoms of a list that stand in it before."
-  (let ((met (make-hash-table :test 'equal :size 16)))
+  (let ((met (make-hash-table :test 'equal :size (+ 16 (length items)))))
     (mlist-of (remove-if-not #'(lambda (x) (or (gethash x met) (progn (setf (gethash x met) t) nil))) (cdr items)))))
 
 (defun $equationp (e) (and (consp e) (eq (caar e) 'mequal)))
@@ -162,7 +177,16 @@
 (defun $sum_in_order (terms)
   (if (any-of-p #'specrepp (cdr terms)) (simplifya (cons '(mplus) (cdr terms)) t) (sum-of-many (cdr terms))))
 
-(defun sum-of-many (terms) (simplifya (cons '(mplus) (sort (copy-list terms) #'great)) t))
+(defun sum-of-many (terms) (simplifya (cons '(mplus) (greatest-to-least terms)) t))
+
+(defun greatest-to-least (terms)
+  "Terms of a sum of Maxima's come from the least to the greatest, and with values put in they mostly stay so."
+  (let ((backwards (reverse terms)))
+    (if (descending-p backwards) backwards (sort backwards #'great))))
+
+(defun descending-p (terms)
+  (do ((terms terms (cdr terms))) ((null (cdr terms)) t)
+    (if (not (great (first terms) (second terms))) (return nil))))
 
 ;;; ---- of many, most are zero --------------------------------------------------------------
 ;;;

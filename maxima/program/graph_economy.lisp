@@ -16,17 +16,15 @@
 
 ;;; ---- live nodes and their uses -----------------------------------------------------------
 
-(defun any-part-p (test node)
-  "Whether the test is true of a node that this one is made of. They are met in order, without a list of them."
-  (case (node-kind node)
-    (sum (dolist (term (node-parts node)) (if (funcall test (term-node term)) (return t))))
-    (product (dolist (factor (node-parts node)) (if (funcall test (factor-node factor)) (return t))))
-    (call (dolist (term (cdr (node-parts node))) (if (funcall test (term-node term)) (return t))))
-    (opaque (funcall test (node-parts node)))))
-
-(defun do-nodes-in (visit node)
-  "Visit the nodes that it is made of, seen through opaque nodes."
-  (any-part-p #'(lambda (part) (funcall visit (opened-node part)) nil) (opened-node node)))
+(defmacro do-parts ((part node) &body body)
+  "Run the body for each node that a node is made of, in order, without a list of them; (return value) ends it."
+  (let ((kind (gensym)) (parts (gensym)) (each (gensym)) (own (gensym)))
+    `(let* ((,own ,node) (,kind (node-kind ,own)) (,parts (node-parts ,own)))
+       (case ,kind
+         ((sum product call)
+          (dolist (,each (if (eq ,kind 'call) (cdr ,parts) ,parts))
+            (let ((,part (if (eq ,kind 'product) (factor-node ,each) (term-node ,each)))) ,@body)))
+         (opaque (block nil (let ((,part ,parts)) ,@body)))))))
 
 (defun opened-node (node) (if (eq (node-kind node) 'opaque) (node-parts node) node))
 
@@ -42,22 +40,23 @@
     (do () ((null waiting))
       (let ((node (pop waiting)))
         (push node live)
-        (do-nodes-in #'(lambda (part) (if (first-use-p part census) (push part waiting))) node)))
+        (do-parts (part node)
+          (let ((part (opened-node part))) (if (first-use-p part census) (push part waiting))))))
     (setf (census-nodes census) (in-order-of-birth live))
     census))
 
 (defun in-order-of-birth (nodes)
   (let ((places (table-of-nodes nil)) (ordered nil))
-    (dolist (node nodes) (setf (aref places (node-number node)) node))
+    (dolist (node nodes) (setf (svref places (node-number node)) node))
     (do ((number (1- (length places)) (1- number))) ((minusp number) ordered)
-      (if (aref places number) (push (aref places number) ordered)))))
+      (if (svref places number) (push (svref places number) ordered)))))
 
-(defun first-use-p (node census) (eql 1 (incf (aref (census-uses census) (node-number node)))))
+(defun first-use-p (node census) (eql 1 (incf (svref (census-uses census) (node-number node)))))
 
 (defun uses-of (node census)
   "None, of a node that is younger than the census."
   (let ((number (node-number (opened-node node))) (uses (census-uses census)))
-    (if (< number (length uses)) (aref uses number) 0)))
+    (if (< number (length uses)) (svref uses number) 0)))
 
 (defun shared-p (node census) (> (uses-of node census) 1))
 
@@ -77,9 +76,9 @@
   (scaled-term (term-coefficient term) (rewritten-node (term-node term) rewriting)))
 
 (defun rewritten-node (node rewriting)
-  (or (aref (rewriting-done rewriting) (node-number node))
-      (setf (aref (rewriting-done rewriting) (node-number node))
-            (let ((parts (aref (rewriting-parts rewriting) (node-number node))))
+  (or (svref (rewriting-done rewriting) (node-number node))
+      (setf (svref (rewriting-done rewriting) (node-number node))
+            (let ((parts (svref (rewriting-parts rewriting) (node-number node))))
               (cond (parts (node-again node parts rewriting))
                     ((and (unruled-p node rewriting) (parts-as-they-were-p node rewriting))
                      (node-term node))
@@ -88,10 +87,9 @@
 (defun unruled-p (node rewriting) (not (and (eq (node-kind node) 'sum) (rewriting-sum-rule rewriting))))
 
 (defun parts-as-they-were-p (node rewriting)
-  (not (any-part-p #'(lambda (part)
-                       (let ((term (rewritten-node part rewriting)))
-                         (not (and (eq (term-node term) part) (eql (term-coefficient term) 1)))))
-                   node)))
+  (not (do-parts (part node)
+         (let ((term (rewritten-node part rewriting)))
+           (if (not (and (eq (term-node term) part) (eql (term-coefficient term) 1))) (return t))))))
 
 (defun node-again (node parts rewriting)
   "A node made anew from its parts rewritten."
@@ -181,14 +179,15 @@
     (let ((rewriting (make-rewriting)))
       (dolist (bag bags)
         (if (bag-changed bag)
-            (setf (aref (rewriting-parts rewriting) (node-number (bag-node bag))) (parts-of-bag bag kind))))
+            (setf (svref (rewriting-parts rewriting) (node-number (bag-node bag))) (parts-of-bag bag kind))))
       (rewritten-terms roots rewriting (census-nodes census)))))
 
 (defun bags-of (kind census)
   (let ((bags nil))
     (dolist (node (census-nodes census) (nreverse bags))
-      (if (and (eq (node-kind node) kind) (cdr (members-of node kind)))
-          (push (make-bag :node node :members (members-of node kind)) bags)))))
+      (if (eq (node-kind node) kind)
+          (let ((members (members-of node kind)))
+            (if (cdr members) (push (make-bag :node node :members members) bags)))))))
 
 (defun members-of (node kind)
   (if (eq kind 'sum)

@@ -22,7 +22,7 @@
   "1, or -1 if the negative of the node is what is written."
   (case (node-kind node)
     (opaque (sign-of (node-parts node) signs))
-    (sum (if (aref (signs-turned signs) (node-number node)) -1 1))
+    (sum (if (svref (signs-turned signs) (node-number node)) -1 1))
     (product (let ((sign 1))
                (dolist (factor (node-parts node) sign)
                  (if (oddp (factor-exponent factor))
@@ -38,33 +38,38 @@
         ((eq (node-kind place) 'call) (count-if #'(lambda (term) (lone-minus-p term signs))
                                                 (cdr (node-parts place))))
         (t (let ((sign (sign-of place signs)))
-             (if (all-of-p #'(lambda (term) (eql -1 (* sign (written-coefficient term signs))))
-                           (node-parts place))
-                 1 0)))))
+             (dolist (term (node-parts place) 1)
+               (if (not (eql -1 (* sign (written-coefficient term signs)))) (return 0)))))))
+
+(defun lone-minuses-at (places signs)
+  (let ((count 0)) (dolist (place places count) (incf count (lone-minuses place signs)))))
 
 (defun chosen-signs (roots census)
   "Signs for all live nodes: sums are turned, one after the other, where that leaves fewer minus signs alone."
   (let ((signs (make-signs)))
-    (dolist (root roots) (push root (aref (signs-roots signs) (node-number (opened-node (term-node root))))))
+    (dolist (root roots) (push root (svref (signs-roots signs) (node-number (opened-node (term-node root))))))
     (dolist (node (census-nodes census))
-      (do-nodes-in #'(lambda (part) (push node (aref (signs-users signs) (node-number part)))) node))
+      (do-parts (part node) (push node (svref (signs-users signs) (node-number (opened-node part))))))
     (dolist (node (census-nodes census) signs) (if (eq (node-kind node) 'sum) (turn-to-save node signs)))))
 
 (defun turn-to-save (sum signs)
-  (let ((places (remove-duplicates (cons sum (places-above sum signs)))) (turned (signs-turned signs)))
-    (flet ((minuses () (sum-of-all (mapcar #'(lambda (place) (lone-minuses place signs)) places)))
-           (turn () (setf (aref turned (node-number sum)) (not (aref turned (node-number sum))))))
-      (let ((before (minuses)))
-        (when (plusp before)
-          (turn)
-          (unless (< (minuses) before) (turn)))))))
+  (let ((places (cons sum (places-above sum signs))))
+    (when (plusp (lone-minuses-at places signs))
+      (let* ((places (remove-duplicates places)) (before (lone-minuses-at places signs)))
+        (turn sum signs)
+        (unless (< (lone-minuses-at places signs) before) (turn sum signs))))))
+
+(defun turn (sum signs)
+  (let ((number (node-number sum)) (turned (signs-turned signs)))
+    (setf (svref turned number) (not (svref turned number)))))
 
 (defun places-above (node signs)
   "The sums, calls and outputs whose terms change sign with the node."
-  (append (aref (signs-roots signs) (node-number node))
-          (mapcan #'(lambda (user)
-                      (if (member (node-kind user) '(sum call)) (list user) (places-above user signs)))
-                  (aref (signs-users signs) (node-number node)))))
+  (let ((places (copy-list (svref (signs-roots signs) (node-number node)))))
+    (dolist (user (svref (signs-users signs) (node-number node)) places)
+      (if (member (node-kind user) '(sum call))
+          (push user places)
+          (setq places (nconc (places-above user signs) places))))))
 
 ;;; ---- the program under way -------------------------------------------------------------------
 
@@ -112,8 +117,8 @@
 
 (defun writing-of (node program)
   "How a node, with the sign chosen for it, is written."
-  (or (aref (program-writings program) (node-number node))
-      (setf (aref (program-writings program) (node-number node))
+  (or (svref (program-writings program) (node-number node))
+      (setf (svref (program-writings program) (node-number node))
             (let ((writing (new-writing node program)))
               (if (or (named-p node program)
                       (> (writing-operations writing) *longest-inline-writing*))

@@ -97,7 +97,7 @@
 
 (defun describe-anew (file)
   "Describe the system and the scenes of the description in FILE, under their names."
-  (let* ((document (with-input-from-string (in (text-of-file file)) (read-json in)))
+  (let* ((document (json-of-text (text-of-file file)))
          (*tables-described* (mapcar #'described-table (member-of document "tables")))
          (scenes (member-of document "scenes"))
          (system nil))
@@ -200,8 +200,14 @@
         ((eq (car tree) 'members) (described-number (member-of tree "num")))
         (t (described-application (first tree) (rest tree)))))
 
+(defvar *symbols-of-names* (make-hash-table :test 'equal))
+
 (defun described-symbol (name)
   "As Maxima reads it: lambda and go are symbols of its own."
+  (or (gethash name *symbols-of-names*)
+      (setf (gethash name *symbols-of-names*) (symbol-of-name name))))
+
+(defun symbol-of-name (name)
   (let ((constant (rassoc name *mathjson-constants* :test #'string=)))
     (if constant
         (car constant)
@@ -242,46 +248,64 @@
           ((operator-of-head head) (simplifya (cons (list (operator-of-head head)) arguments) nil))
           (t ($refuse '$head_not_described head)))))
 
-;;; JSON: an object becomes (members (name . value) ...), an array the list of its items, null the symbol null.
+;;; JSON: an object becomes (members (name . value) ...), an array the list of its items, null the symbol null. The text
+;;; is a string, gone through by index: a stream takes three times as long.
+
+(defvar *json-text* "" "What is read.")
+(defvar *json-place* 0 "Where it is being read.")
+(proclaim '(type simple-string *json-text*))
+(proclaim '(type fixnum *json-place*))
 
 (defun member-of (object name) (cdr (assoc name (cdr object) :test #'string=)))
 
-(defun read-json (in)
-  (let ((c (peek-char t in)))
-    (cond ((char= c #\{) (read-char in) (cons 'members (read-items in #\} #'read-member)))
-          ((char= c #\[) (read-char in) (read-items in #\] #'read-json))
-          ((char= c #\") (read-char in) (read-json-string in))
-          ((or (digit-char-p c) (char= c #\-)) (read-json-integer in))
-          (t (read-json-word in)))))
+(defun json-of-text (text)
+  (let ((*json-text* text) (*json-place* 0)) (read-json)))
 
-(defun read-items (in closing reader)
+(defun next-of-json ()
+  "The next character that is not white space, where the reading stays."
+  (do ((c (schar *json-text* *json-place*) (schar *json-text* *json-place*)))
+      ((not (or (char= c #\Space) (char= c #\Newline))) c)
+    (incf *json-place*)))
+
+(defun read-json ()
+  (let ((c (next-of-json)))
+    (cond ((char= c #\{) (incf *json-place*) (cons 'members (read-items #\} #'read-member)))
+          ((char= c #\[) (incf *json-place*) (read-items #\] #'read-json))
+          ((char= c #\") (read-json-string))
+          ((or (digit-char-p c) (char= c #\-)) (read-json-integer))
+          (t (incf *json-place* 4) 'null)))) ; the one word that a description has
+
+(defun read-items (closing reader)
   (let ((items nil))
-    (do ((c (peek-char t in) (peek-char t in)))
-        ((char= c closing) (read-char in) (nreverse items))
-      (if (char= c #\,) (read-char in) (push (funcall reader in) items)))))
+    (do ((c (next-of-json) (next-of-json)))
+        ((char= c closing) (incf *json-place*) (nreverse items))
+      (if (char= c #\,) (incf *json-place*) (push (funcall reader) items)))))
 
-(defun read-member (in)
-  (peek-char t in)
-  (let ((name (read-json in)))
-    (peek-char #\: in)
-    (read-char in)
-    (cons name (read-json in))))
+(defun read-member ()
+  (let ((name (read-json)))
+    (next-of-json)
+    (incf *json-place*)
+    (cons name (read-json))))
 
-(defun read-json-string (in)
-  (let ((characters nil))
-    (do ((c (read-char in) (read-char in)))
-        ((char= c #\") (coerce (nreverse characters) 'string))
-      (push (if (char= c #\\) (read-char in) c) characters))))
+(defun read-json-string ()
+  (let ((escaped nil) (start (1+ *json-place*)))
+    (do ((c (schar *json-text* (incf *json-place*)) (schar *json-text* (incf *json-place*))))
+        ((char= c #\"))
+      (when (char= c #\\) (incf *json-place*) (setq escaped t)))
+    (let ((found (subseq *json-text* start *json-place*)))
+      (incf *json-place*)
+      (if escaped (without-escapes found) found))))
 
-(defun read-json-integer (in)
-  (let ((digits nil))
-    (do ((c (read-char in) (read-char in nil #\Space)))
-        ((not (or (digit-char-p c) (char= c #\-)))
-         (unread-char c in)
-         (parse-integer (coerce (nreverse digits) 'string)))
-      (push c digits))))
+(defun without-escapes (text)
+  (with-output-to-string (out)
+    (do ((i 0 (1+ i))) ((>= i (length text)))
+      (if (char= (char text i) #\\) (incf i))
+      (write-char (char text i) out))))
 
-(defun read-json-word (in)
-  "null, the one word that a description has."
-  (dotimes (k 4) (read-char in))
-  'null)
+(defun read-json-integer ()
+  (let* ((negative (char= (schar *json-text* *json-place*) #\-)) (number 0))
+    (if negative (incf *json-place*))
+    (do ((digit (digit-char-p (schar *json-text* *json-place*)) (digit-char-p (schar *json-text* *json-place*))))
+        ((null digit) (if negative (- number) number))
+      (setq number (+ (* 10 number) digit))
+      (incf *json-place*))))

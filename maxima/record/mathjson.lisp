@@ -39,7 +39,7 @@
         ((eq tree '$json_null) (write-string "null" out))
         ((eq (caar tree) '$json_object) (write-members (cdr tree) out))
         ((eq (caar tree) '$json_array) (write-separated (cdr tree) #\[ #\] #'write-json out))
-        ((eq (caar tree) '$json_expression) (write-mathjson ($totaldisrep (cadr tree)) out))
+        ((eq (caar tree) '$json_expression) (write-mathjson (cadr tree) out))
         (t ($refuse '$data_not_written tree))))
 
 (defun $json_assignments (assignments)
@@ -67,10 +67,14 @@
 
 (defun write-json-string (text out)
   (write-char #\" out)
-  (if (find-if #'to-be-escaped-p text)
-      (map nil #'(lambda (c) (write-string (escaped c) out)) text)
-      (write-string text out))
+  (write-string (with-escapes text) out)
   (write-char #\" out))
+
+(defun with-escapes (text)
+  "The text itself, where nothing is to be escaped."
+  (if (dotimes (i (length text)) (if (to-be-escaped-p (char text i)) (return t)))
+      (with-output-to-string (out) (map nil #'(lambda (c) (write-string (escaped c) out)) text))
+      text))
 
 (defun to-be-escaped-p (c) (or (char= c #\") (char= c #\\) (< (char-code c) 32)))
 
@@ -83,15 +87,16 @@
 (defun write-mathjson (e out)
   (cond ((integerp e) (write-integer e out))
         ((floatp e) (write-number (decimal-digits (rational e) 17) out))
-        ((symbolp e) (write-string (json-of-name e) out))
+        ((symbolp e) (write-char #\" out) (write-string (json-of-name e) out) (write-char #\" out))
         ((atom e) ($refuse '$expression_not_written e))
         ((eq (caar e) 'rat) (write-tree "Rational" (cdr e) out))
+        ((eq (caar e) 'mrat) (write-mathjson ($totaldisrep e) out))
         ((eq (caar e) 'bigfloat) (write-bigfloat e out))
         ((eq (caar e) 'mexpt) (write-power (cadr e) (caddr e) out))
         ((eq (caar e) 'mplus) (write-sum (cdr e) out))
         ((member 'array (car e)) (write-tree "Subscript" (cons (caar e) (cdr e)) out))
         ((polygamma-p e) (write-tree "PolyGamma" (list (second (second e)) (third e)) out))
-        ((cdr (assoc (caar e) *mathjson-functions*))
+        ((assoc (caar e) *mathjson-functions*)
          (write-tree (cdr (assoc (caar e) *mathjson-functions*)) (cdr e) out))
         ((write-described e out))
         (t ($refuse '$function_not_written (caar e)))))
@@ -107,8 +112,8 @@
 
 ;;; Maxima's own sums hold no minus signs; those of a motion program do, as differences.
 (defun write-sum (terms out)
-  (let ((plus (remove-if #'negated-p terms))
-        (minus (mapcar #'cadr (remove-if-not #'negated-p terms))))
+  (let ((plus nil) (minus nil))
+    (dolist (term (reverse terms)) (if (negated-p term) (push (cadr term) minus) (push term plus)))
     (cond ((null minus) (write-tree "Add" plus out))
           ((null plus) (write-tree "Negate" (list (sum-expression minus)) out))
           (t (write-tree "Subtract" (list (sum-expression plus) (sum-expression minus)) out)))))
@@ -143,5 +148,4 @@
 
 (defun json-of-name (symbol)
   (or (gethash symbol *json-of-names*)
-      (setf (gethash symbol *json-of-names*)
-            (with-output-to-string (out) (write-json-string (mathjson-symbol symbol) out)))))
+      (setf (gethash symbol *json-of-names*) (with-escapes (mathjson-symbol symbol)))))
