@@ -26,11 +26,12 @@ from .engines.scaled_time import in_unit
 from .evaluation import Numbers
 from .initial_tangents import ConstraintVariation
 from .inputs import Inputs, heyoka_inputs
-from .matrices import MotionMatrices
+from .matrices import MotionMatrices, start_of
 from .nominal import Nominal
-from .variation import size_of
+from .variation import Variation, size_of
 
 NEAR = 10  # powers of two between such units
+PROBES = np.array([0.0, 0.3127, -0.7411])  # from the start, in these units: where a parameter may have an effect
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
 
@@ -68,9 +69,26 @@ class VariationalEquations:
         self._seeds = {name: derivative_name(name, name) for name in parameters}
         self._sizes = np.array([float(size_of(problem, name)) for name in parameters])
         self._places = [self.directions.index(name) for name in parameters]
-        own = dict(zip(problem.state, self.units.state, strict=True))
-        self._least = np.array([1 / own.get(name, 1.0) for name in self.directions])
+        least = {name: 1 / size for name, size in zip(problem.state, self.units.state, strict=True)}
+        least |= self._moved_by_one([name for name in parameters if not problem.values.get(name)])
+        self._least = np.array([least.get(name, 1.0) for name in self.directions])
         self.program = problem.once(self.kind, problem.motion, self._differentiated)
+
+    def _moved_by_one(self, names: Sequence[str]) -> dict[str, float]:
+        """Return velocities, in `units`, that a parameter of one makes in a unit of time.
+
+        Parameters of value zero do not show their size. Those without an effect at some states are left out.
+        """
+        if not names:
+            return {}
+        problem, units, (t, state) = self.problem, self.units, start_of(self.problem)
+        accelerations = [f"ddot({q})" for q in problem.coordinates]
+        times, states = t + units.time * np.abs(PROBES), state[:, None] + np.outer(units.state, PROBES)
+        rates = Variation(problem, problem.motion, accelerations, names)
+        moves = rates(times, states, np.zeros((len(state), len(names), len(times))))
+        moves = np.abs(moves) * (units.time / units.velocities)[:, None, None]
+        found = np.max(np.where(np.isfinite(moves), moves, 0.0), axis=(0, 2))
+        return {name: float(move) for name, move in zip(names, found, strict=True) if move > 0}
 
     def _differentiated(self) -> Program:
         own = {name: {name: Name(seed)} for name, seed in self._seeds.items()}

@@ -415,6 +415,17 @@ def test_derivatives_in_other_units(units):
     assert moved(*units) == pytest.approx(moved("1", "1", "1"), rel=1e-9, abs=1e-9)
 
 
+@pytest.mark.parametrize("power", [-30, 30])
+def test_derivatives_by_a_force_of_zero_beside_a_uniform_motion(power):
+    """Truth: (1 - cos(t))/k. Where k is 10^30, the motion alone decided about steps, with errors of 10^7."""
+    text = f"""system : holonomic_system(coordinates = [x, y], parameters = [k, F],
+  kinetic_energy = 10^({power})*(dot(x)^2 + dot(y)^2)/2, potential_energy = k*y^2/2, forces = [0, F])$
+s : holonomic_scene(system, parameter_values = [k = 10^({power}), F = 0],
+  initial_state = [x = 1, y = 0, dot(x) = 1/10, dot(y) = 0], time_span = [0, 20])$"""
+    found = holonom.system(text).simulate(samples=9, sensitivities=["F"])
+    assert found["d(y, F)"] * 10.0**power == pytest.approx(1 - np.cos(found.times), abs=1e-12)
+
+
 def test_values_of_an_earlier_motion_were_taken():
     scene = holonom.system(SPRING)
     scene.simulate(samples=2, m=9, k=3)
