@@ -157,7 +157,8 @@ class InitialStates:
         missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved, sizes) > ROUNDING
         self._solved(states, values, group, group.given, group.bound, False, np.flatnonzero(missed))
         size = np.max(np.abs(data), axis=0)
-        return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * np.where(size > 0, size, 1.0)
+        size = np.where(size > 0, size, np.max(self._nominal.state[rows]))
+        return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * size
 
     def _solved_nearby(self, states: Numbers, values: Numbers, group: "_Group") -> NDArray[np.bool_]:
         """Replace numbers by the nearest ones that satisfy the constraints, in place.
@@ -299,7 +300,8 @@ class InitialStatesBySign:
                 clock(inputs(time, unused, signs=signs, values=values))[0]
                 for time in (self._start, self._start + SOON * scale)
             )
-            signs[index] = np.where(np.where(np.abs(now) > ROUNDING * scale, now, soon) >= 0, 1.0, -1.0)
+            has_sign = np.abs(now) * SOON > ROUNDING * np.abs(soon - now)  # relative to its change in this time
+            signs[index] = np.where(np.where(has_sign, now, soon) >= 0, 1.0, -1.0)
         return signs
 
 

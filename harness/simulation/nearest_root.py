@@ -87,14 +87,14 @@ class NearestRoots:
 
         If there is none, it is the full step.
         """
-        result, size, share = here + change, np.max(np.abs(change), axis=0), 1.0
+        result, size, share = here + change, self._largest(change), 1.0
         open_ = np.flatnonzero(~settled)
         for _ in range(HALVINGS):
             if not len(open_):
                 break
             trial = here[:, open_] + share * change[:, open_]
             following = self._next_roots(trial, at, elements, open_)
-            good = np.max(np.abs(following), axis=0) <= (1 - share / 4) * size[open_]
+            good = self._largest(following) <= (1 - share / 4) * size[open_]
             result[:, open_[good]] = trial[:, good]
             open_, share = open_[~good], share / 2
         return result
@@ -113,11 +113,15 @@ class NearestRoots:
         """
         at = self._linearize(guess, elements)
         change = self._correct(at)
-        size, contracts = np.max(np.abs(change), axis=0), np.ones(len(elements), dtype=bool)
+        size, contracts = self._largest(change), np.ones(len(elements), dtype=bool)
         for share in ALONG:
             left = self._next_roots(guess + share * change, at, elements, elements) - (1 - share) * change
-            contracts &= np.max(np.abs(left), axis=0) <= CONTRACTION * size
+            contracts &= self._largest(left) <= CONTRACTION * size
         return contracts
+
+    def _largest(self, change: Numbers) -> Numbers:
+        """Return the largest parts of changes, shape (k,), in terms of nominal sizes."""
+        return np.max(np.abs(change.T) / self._sizes, axis=1)
 
     def _search(
         self, guess: Numbers, roots: Numbers, found: NDArray[np.bool_], elements: NDArray[np.int64]
@@ -127,7 +131,7 @@ class NearestRoots:
         best, known = roots[:, elements].copy(), found[elements].copy()
         share = NEARER if len(here.residual) < len(guess) else SAME
         distance = np.where(known, _distance(best - near, here.mass), np.inf)
-        size = np.maximum(1e-300, np.max(np.abs(near), axis=0))
+        size = _distance(np.maximum(np.abs(near.T), self._sizes).T, np.abs(here.mass))
         for reach in (None, *FARTHER):
             if reach is not None and known.all():
                 break
@@ -135,7 +139,7 @@ class NearestRoots:
             for _ in range(ROUNDS):
                 if not len(active):
                     break
-                far = distance[active] if reach is None else reach * np.where(size[active] > 1e-200, size[active], 1.0)
+                far = distance[active] if reach is None else reach * size[active]
                 improved = np.zeros(len(active), dtype=bool)
                 for step in _starts(here.mass[..., active], far):
                     points, arrived = self._newton(near[:, active] + step, elements[active])

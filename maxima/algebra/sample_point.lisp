@@ -383,10 +383,9 @@ vanish; false where Newton's method does not get there."
 (defun root-from-around (point)
   "The nearest root that Newton's method gets to from around the point, where it gets to none from there; or nil."
   (if (<= (length *unknowns*) *most-unknowns-searched*)
-      (let ((size (let ((largest (largest-coordinate point))) (if (zerop largest) 1 largest))))
-        (some #'(lambda (distance)
-                  (let ((close (nearest-within distance nil point))) (if close (iterated-from close))))
-              (list (/ size 4) size (* 4 size) (* 16 size))))))
+      (some #'(lambda (share)
+                (let ((close (nearest-within share nil point))) (if close (iterated-from close))))
+            '(1/4 1 4 16))))
 
 (defun contracts-at-once (point)
   "Whether the constraints are nearly linear along the first correction, so that the point is next to its root."
@@ -402,8 +401,8 @@ vanish; false where Newton's method does not get there."
 (defun largest-difference (corrections others)
   (largest-correction (mapped-corrections #'(lambda (column value) (- value (gethash column others 0))) corrections)))
 
-(defun nearest-within (distance found point)
-  "The nearest root from starts within this distance of the point, or that of the one found; nil where none is nearer."
+(defun nearest-within (share found point)
+  "The nearest root from starts within this share of the point's size, or the distance of the one found; or nil."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (*most-corrections* *most-corrections-of-search*)
@@ -412,7 +411,7 @@ vanish; false where Newton's method does not get there."
          (rows (catch 'irregular-point (numeric-rows *metric* (converted-point point #'float-of))))
          (known (if found (distance-in-metric (converted-point found #'float-of) guess rows)))
          (best nil))
-    (do* ((reach (or known (float-of distance)) (second best))
+    (do* ((reach (or known (* share (size-in-metric guess rows))) (second best))
           (nearer (nearest-of-starts guess reach known rows) (nearest-of-starts guess reach reach rows)))
          ((null nearer) (if best (converted-point (first best) #'rational)))
       (setq best nearer))))
@@ -439,11 +438,23 @@ vanish; false where Newton's method does not get there."
                 (incf (gethash name (sample-point-symbols start)) (* share (/ distance (sqrt mass))))
                 (push start starts))))))))
 
+(defun size-in-metric (guess rows)
+  "Its distance from zero; the length of the first correction where it is zero, and 1 where that has none."
+  (let ((size (length-in-metric (mapcar #'(lambda (x) (coordinate x guess)) *unknowns*) rows)))
+    (if (zerop size) (setq size (length-in-metric (first-ways guess) rows)))
+    (if (zerop size) 1d0 size)))
+
+(defun first-ways (guess)
+  (let ((corrections (car (errset (catch 'irregular-point (corrections-of (residuals-at guess) guess))))) (column 0))
+    (mapcar #'(lambda (x) (declare (ignore x)) (if corrections (gethash (incf column) corrections 0) 0)) *unknowns*)))
+
 (defun distance-in-metric (point guess rows)
-  (let ((ways (mapcar #'(lambda (x) (- (coordinate x point) (coordinate x guess))) *unknowns*))
-        (square 0))
+  (length-in-metric (mapcar #'(lambda (x) (- (coordinate x point) (coordinate x guess))) *unknowns*) rows))
+
+(defun length-in-metric (ways rows)
+  (let ((square 0))
     (mapc #'(lambda (row way) (dolist (e row) (incf square (* way (cdr e) (nth (1- (car e)) ways))))) rows ways)
-    (sqrt (max square 0))))
+    (sqrt (float-of (max square 0)))))
 
 (defun plain-number (number)
   "The fraction of few digits that the number agrees with; else its decimal digits."

@@ -89,3 +89,28 @@ def test_start_without_a_guess_is_at_no_distance():
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2)$
 motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$""").simulate(samples=2)
     assert motion.report.moved is None
+
+
+IN_UNITS = """
+system : holonomic_system(coordinates = [x, y], parameters = [p], kinetic_energy = {mass}*(dot(x)^2 + dot(y)^2)/2,
+  constraints = [p*({function}) - x/({length})])$
+motion : holonomic_scene(system, parameter_values = [p = 1], initial_state = [x = 0, dot(x) = 0],
+  initial_guess = [y = 0, dot(y) = 0], time_span = [0, 1/100])$
+"""
+
+
+@pytest.mark.parametrize(
+    ("function", "root"),
+    [
+        ("q^5 - q - 1", brentq(lambda q: q**5 - q - 1, 1, 2)),
+        ("q^3 - 2*q + 2", brentq(lambda q: q**3 - 2 * q + 2, -2, -1)),
+    ],
+)
+@pytest.mark.parametrize(("mass", "length", "unit"), [("1/10^27", "1/10^10", 1e-10), ("10^24", "10^9", 1e9)])
+def test_start_beyond_a_minimum_is_found_in_all_units(function, root, mass, length, unit):
+    """Around a guess of zero the search began at a distance of one, by Maxima and in each row."""
+    function = function.replace("q", f"(y/({length}))")
+    scene = holonom.system(IN_UNITS.format(mass=mass, length=length, function=function))
+    assert scene.simulate(samples=2)["y"][0] / unit == pytest.approx(root, rel=1e-12)
+    rows = holonom.sweep(scene, values={"p": [1, 2]}, keep=["at(y,0)"]).to_pandas()
+    assert rows["at(y,0)"].to_numpy() / unit == pytest.approx(root, rel=1e-12)

@@ -294,8 +294,9 @@ def require_gradient(problem: MotionProblem, t: float, at: MotionState) -> None:
     HolonomError
         A gradient has vanished.
     """
+    sizes = at.matrices.nominal.coordinates
     left, whole = (
-        np.linalg.norm(at.matrices(*when).jacobian, axis=1) for when in ((at.t, at.state), start_of(problem))
+        np.linalg.norm(at.matrices(*when).jacobian * sizes, axis=1) for when in ((at.t, at.state), start_of(problem))
     )
     lost = np.flatnonzero(left < VANISHED * whole)
     if len(lost):
