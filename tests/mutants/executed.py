@@ -193,6 +193,21 @@ class Executed:
             chosen.append(test)
         return chosen
 
+    def while_loading(self, function: Function) -> bool:
+        """Return True if a function of Maxima runs while the library is loaded.
+
+        Parameters
+        ----------
+        function : Function
+            A function.
+
+        Returns
+        -------
+        bool
+        """
+        files = (measured["functions"] for test, measured in self._tests.items() if test.endswith(".mac"))
+        return all(str(function) in functions_executed for functions_executed in files)
+
     def _executing(self, function: Function) -> set[str]:
         name = function.name.rpartition(".")[2].lstrip("$")
         callers = (str(each) for each in functions() if each.words & {name, f"${name}"})

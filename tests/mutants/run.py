@@ -28,7 +28,7 @@ from pathlib import Path
 
 from changes import changes
 from copies import Copy, in_copies
-from executed import measure
+from executed import Executed, measure
 from scipy.stats import binomtest
 from sources import Function, functions, read
 
@@ -114,19 +114,15 @@ def allow_redefinition(copy: Copy) -> None:
     failing(copy, "tests/maxima/rtest_ranks.mac")
 
 
-def killer(copy: Copy, mutant: Mutant, tests: Sequence[str]) -> str:
-    """Return the first test that fails with the mutant, or "" if it survives.
-
-    A function of Maxima is first defined anew in the image. What an image has computed from it needs a new image.
-    """
+def killer(copy: Copy, mutant: Mutant, executed: Executed) -> str:
+    """Return the first test that fails with the mutant, or "" if it survives."""
+    tests, function = executed.by(mutant.function), mutant.function
     if not tests:
         return ""
-    if mutant.function.language == "mac":
-        definition = quoted(f"{mutant.function.head}{mutant.body}$")
-        found = _failing_with(copy, REDEFINED, REDEFINITION.format(definition), tests)
-        if found:
-            return found
-    return _failing_with(copy, mutant.function.path, mutant.source, tests)
+    if function.language != "mac" or executed.while_loading(function):
+        return _failing_with(copy, function.path, mutant.source, tests)
+    definition = quoted(f"{function.head}{mutant.body}$")
+    return _failing_with(copy, REDEFINED, REDEFINITION.format(definition), tests)
 
 
 def _failing_with(copy: Copy, path: str, text: str, tests: Sequence[str]) -> str:
@@ -192,7 +188,7 @@ def main() -> None:
     left = [mutant for mutant in chosen if mutant not in outcomes]
 
     def outcome(copy: Copy, mutant: Mutant) -> str:
-        return killer(copy, mutant, chosen[mutant])
+        return killer(copy, mutant, executed)
 
     for mutant, found in in_copies(outcome, left, given.jobs, allow_redefinition):
         outcomes[mutant] = found
