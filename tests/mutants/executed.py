@@ -72,7 +72,7 @@ def marked_body(function: Function, number: int) -> str:
 def add_marks(copy: Copy) -> None:
     """Mark all functions of a copy."""
     texts = defaultdict(str)
-    for number, function in reversed([*enumerate(functions())]):
+    for number, function in sorted(enumerate(functions()), key=lambda each: -each[1].start):  # from the end
         text = texts[function.path] or read(function.path)
         marked = text[: function.start] + marked_body(function, number) + text[function.end :]
         texts[function.path] = marked if function.language != "py" or _parses(marked) else text

@@ -1,5 +1,7 @@
 """The tests of a mutant are those that execute its function."""
 
+import re
+
 import executed
 import pytest
 import sources
@@ -32,6 +34,11 @@ def test_a_function_that_was_not_measured_has_the_tests_of_its_callers():
 def test_marks_tell_what_a_test_executes_in_each_language(tmp_path):
     copy = Copy(tmp_path / "copy")
     executed.add_marks(copy)
+    texts = [
+        (copy.directory / path).read_text(encoding="utf-8") for path in {each.path for each in sources.functions()}
+    ]
+    marks = re.findall(r"(?:\(\?mark\(|\(mark |\.mark\()(\d+)\)", "\n".join(texts))
+    assert sorted(map(int, marks)) == [*range(len(sources.functions()))]
     found = executed._executed_by(copy, executed.ROOT / "tests/maxima/rtest_christoffel.mac")
     functions = found["tests/maxima/rtest_christoffel.mac"]["functions"]
     called = "maxima/derivation/christoffel.mac::christoffel_first_kind", "maxima/language/one_pass.lisp::$gradient"
