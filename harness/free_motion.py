@@ -322,7 +322,7 @@ def free_motion(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`, or the file has no such scene.
+        As `holonom.documents.ask`, or the file has no such scene.
 
     References
     ----------
@@ -347,7 +347,7 @@ def read_free_motion(text: str) -> FreeMotion:
     Raises
     ------
     HolonomError
-        As `holonom.documents.read`.
+        As `holonom.formats.read`.
     """
     return read(Document.FREE_MOTION, text, FreeMotion)
 

@@ -54,6 +54,24 @@ def test_docstrings_are_sentences_without_semicolons():
     assert found == []
 
 
+def test_modules_and_files_that_docstrings_name_are_there():
+    root = PACKAGE.parent
+    texts = [text for file in sorted(PACKAGE.rglob("*.py")) for text in docstrings(file)]
+    named = {name for text in texts for name in re.findall(r"`(holonom(?:\.\w+)+)`", text)}
+    files = {name for text in texts for name in re.findall(r"`((?:maxima|tests|examples|harness)/[\w/.]+\.\w+)`", text)}
+    assert named
+    assert files
+    assert [name for name in sorted(named) if not names_something(name)] == []
+    assert [name for name in sorted(files) if not (root / name).exists()] == []
+
+
+def names_something(name: str) -> bool:
+    """Return True for a module of the package, or for what is in one."""
+    module, _, attribute = name.rpartition(".")
+    file = PACKAGE.joinpath(*name.split(".")[1:])
+    return file.is_dir() or file.with_suffix(".py").exists() or hasattr(import_module(module), attribute)
+
+
 def test_a_summary_names_its_subject(summaries):
     clause = re.compile(r"((Return|Yield) )?(what|whatever|whether|where|when|how|why|those|the same) ", re.IGNORECASE)
     assert [each for each in summaries if clause.match(each[1])] == []

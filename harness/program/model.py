@@ -107,7 +107,7 @@ def scene_model(file: Source | Path, request: Request, parameters: Sequence[str]
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`, the file has no scene, the scene not one of the parameters, or no order of pivots
+        As `holonom.documents.ask`, the file has no scene, the scene not one of the parameters, or no order of pivots
         solves its equations.
     """
     for name in parameters:

@@ -450,7 +450,7 @@ def motion_problem(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`, or the file has no scene, a control no law, a parameter no value.
+        As `holonom.documents.ask`, or the file has no scene, a control no law, a parameter no value.
     """
     source = source_of(file, limits)
     document = problem_document(source, request, limits, digits, open_parameters)

@@ -32,7 +32,7 @@ def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) 
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`: among others, the control law is not analytic at t0, or G is singular there. As
+        As `holonom.documents.ask`: among others, the control law is not analytic at t0, or G is singular there. As
         `holonom.series.heyoka_series.expand_by_heyoka`.
     """
     if request.precision is not None:

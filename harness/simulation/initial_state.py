@@ -2,7 +2,7 @@
 
 Given values are evaluated. The constraints determine the others by Newton's method, with the least corrections in the
 mass metric or the only ones, by `maxima/program/parametric_start.mac`. Data of limited digits that violate a constraint
-by less than a share of 1e-9 are corrected in the same way. `maxima/derivation/initial_state.mac` does the same to 60
+by less than a share of 1e-9 are corrected in the same way. `maxima/general/initial_state.mac` does the same to 60
 digits for one motion.
 """
 

@@ -4,8 +4,11 @@ from fractions import Fraction
 
 import pytest
 
+import holonom
+from holonom.explanations import notes, unresolved
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
+from holonom.simulation import time_dependence as scan
 from holonom.simulation.time_dependence import NOT_SMOOTH, TimeDependence, time_dependence, time_expressions
 
 T, X = Name("t"), Name("x")
@@ -77,3 +80,16 @@ def test_what_changes_too_often_to_be_resolved_was_given_up_in_silence():
     for often, start in ((10**4, None), (10**6, 0.0)):
         fast = of(Operation.SIN, of(Operation.MULTIPLY, Fraction(often), T))
         assert time_dependence(program(fast), 0.0, 1.0).unresolved == start
+
+
+def test_a_motion_and_its_row_tell_what_the_scan_did_not_resolve(monkeypatch):
+    monkeypatch.setattr(scan, "MOST", 4)
+    scene = holonom.system("""system : holonomic_system(coordinates = [x], parameters = [k],
+  kinetic_energy = dot(x)^2/2, potential_energy = k*x^2/2, forces = [sin(1000*t)])$
+shaken : holonomic_scene(system, parameter_values = [k = 1], initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$
+""")
+    report = scene.simulate(samples=2).report
+    assert report.unresolved == 0.0
+    (noted,) = (note for note in notes(report) if note == unresolved(0.0))
+    rows = holonom.sweep(scene, values={"k": [1, 2]}, keep=["x"], workers=1).to_pandas()
+    assert rows[["status", "note"]].to_numpy().tolist() == [["ok", noted]] * 2

@@ -152,7 +152,7 @@ def maxima_series(
     Raises
     ------
     HolonomError
-        As `holonom.maxima.ask_scene`, or there are no exact coefficients.
+        As `holonom.documents.ask`, or there are no exact coefficients.
     """
     asked = (request.scene, orders, digits)
     text = ask(Document.SERIES_COSTS, file, *asked, settings=request.settings, limits=limits)

@@ -176,17 +176,25 @@ def test_what_it_lacks_is_refused(request_, kind):
         simulate(problem("pendulum.mac"), wanted)
 
 
-def test_motions_left_their_libraries_open():
+ENDED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = x^2/2)$
+swing : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 3], until = [x])$
+"""
+
+
+def test_motions_left_their_libraries_open(write_scene):
     """Each row of a sweep that is integrated alone may have one of its own."""
 
     def open_libraries() -> int:
         return len(set(re.findall(r"\S*/motion\.so", Path("/proc/self/maps").read_text(encoding="utf-8"))))
 
-    swing, before = problem("pendulum.mac", "swing_scene"), open_libraries()
+    swing, ended = problem("pendulum.mac", "swing_scene"), motion_problem(write_scene(ENDED), Request(), Limits())
+    before = open_libraries()
     engine = RungeKuttaEngine(swing)
     assert open_libraries() == before + 1
     engine.close()
     for until in (Fraction(1), Fraction(10**12)):  # the second takes too many steps
         with suppress(HolonomError):
             simulate(swing, SimulationRequest(engine=EngineName.RUNGE_KUTTA, until=until))
+    assert simulate(ended, SimulationRequest(engine=EngineName.RUNGE_KUTTA)).report.ending.crossed == "x"
     assert open_libraries() == before
