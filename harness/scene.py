@@ -507,9 +507,9 @@ class Scene:
         Raises
         ------
         HolonomError
-            If a control has no law or a parameter no value, if a sign changes or slides there, if the motion has
-            releases or forces with multipliers, if it cannot be continued so far, or if the constraints lose rank
-            there.
+            If a control has no law or a parameter no value, if a sign changes or slides there, if a joint is released
+            before, if forces contain multipliers, if the motion cannot be continued so far, or if the constraints lose
+            rank there.
 
         Examples
         --------

@@ -328,7 +328,8 @@ class _Simulation:
 
     def _take(self, progress: Progress | None, watch: TakeStep | None) -> TakeStep | None:
         """Receiver of each step, or None."""
-        nothing_to_integrate = not self.problem.signs and self.begun.balance.conservative and self.steps is None
+        one_mode = not self.problem.signs and not self.problem.ends.released
+        nothing_to_integrate = one_mode and self.begun.balance.conservative and self.steps is None
         if (
             self.samples == FINAL_STATE_ALONE
             and nothing_to_integrate

@@ -35,6 +35,7 @@ from ..program.sign_pattern import drawing_with_values
 from ..schema import MATRIX, PAIRS, VECTOR, Names, lists_of
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
+from ..simulation.hybrid_motion import EventOutcome
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
@@ -327,10 +328,10 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        A sign changes or slides there. The motion has releases or forces with multipliers, or cannot be continued so
-        far. The constraints are singular there, or derivatives have no value.
+        A sign changes or slides there. A joint is released before. The motion has forces with multipliers, or cannot be
+        continued so far. The constraints are singular there, or derivatives have no value.
     """
-    require_analytic(replace(problem, signs=(), tables=()))
+    require_analytic(replace(problem, signs=(), tables=(), ends=replace(problem.ends, released=())))
     t, state = state_at(problem, at)
     require_between_switchings(problem, t, state)
     with np.errstate(invalid="ignore"):
@@ -518,12 +519,15 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     Raises
     ------
     HolonomError
-        The motion cannot be continued so far, ends before, or has errors too large for the tolerance.
+        The motion cannot be continued so far, ends before, releases a joint, or has errors too large for the tolerance.
     """
     start = start_of(problem)
     if at is None or at == start[0]:
         return start
     report = simulated(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
+    for each in report.switchings:
+        if each.outcome is EventOutcome.JOINT_RELEASED:
+            raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, detail=each.function)
     return float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
 
 

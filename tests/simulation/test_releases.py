@@ -15,7 +15,9 @@ from holonom.program.motion_problem import problem_document, read_problem
 from holonom.program.request import Request, Solve
 from holonom.sandbox import Limits
 from holonom.simulation.hybrid_motion import EventOutcome
+from holonom.simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from holonom.simulation.result import Simulation
+from holonom.simulation.simulate import simulate
 
 # Released from rest where the thread is horizontal: at the depth d the tension is 3 m g d/l.
 CUT = """
@@ -197,3 +199,11 @@ def test_check_finds_constraints_that_do_not_end(write_scene):
     programs = [ScenePrograms("run", {solve: read_problem(json.dumps(each)) for solve, each in wrong.items()})]
     found = verify_programs(description, programs, "seed")
     assert [each.found.verdict for each in found if "; after t-c = 0" in each.part] == [Verdict.DISAGREES]
+
+
+def test_the_final_state_alone_was_given_with_the_constraint_that_had_ended():
+    """Truth: it falls freely."""
+    scene = holonom.system(CUT.format(ends="released = [thread = t - 1/10]"))
+    alone = simulate(scene._derived.motion(Request()), SimulationRequest(samples=FINAL_STATE_ALONE)).report
+    assert alone.multipliers == {"lambda1": 0}
+    assert not alone.violations

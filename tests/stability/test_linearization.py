@@ -393,3 +393,20 @@ def test_outputs_of_the_scene_deviate_with_what_they_are_made_of():
         assert row["pull"] == pytest.approx(multiplier * row["x"] + x * row["lambda1"])
         assert row["side"] == pytest.approx(row["x"])
         assert row["E"] == pytest.approx(1.5 * (v * row["dot(x)"] + w * row["dot(y)"] + 9.81 * row["y"]))
+
+
+CUT = """bob : particle(1, [x, y])$  thread : distance_joint(bob, [0, 0], 1)$
+system : holonomic_system(parameters = [g], assembly(bob, thread, uniform_gravity(g, bob)))$
+run : holonomic_scene(system, parameter_values = [g = 10], time_span = [0, 1], released = [thread = t - 1/2],
+  initial_state = [x = 0, y = -1, dot(x) = 0])$
+"""
+
+
+def test_a_motion_is_linearised_before_a_release():
+    """Truth: a pendulum of length one, whose thread is cut at t = 1/2."""
+    scene = holonom.system(CUT)
+    for t in (0, Fraction(1, 4)):
+        assert sorted(scene.linearize(at=t).eigenvalues.imag) == pytest.approx(imaginary([10**0.5]), abs=1e-12)
+    with pytest.raises(HolonomError) as refused:
+        scene.linearize(at=Fraction(3, 4))
+    assert refused.value.kind is ErrorKind.NOT_ANALYTIC
