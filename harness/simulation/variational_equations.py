@@ -31,7 +31,7 @@ from .nominal import Nominal
 from .variation import Variation, size_of
 
 NEAR = 10  # powers of two between such units
-PROBES = np.array([0.0, 0.3127, -0.7411])  # from the start, in these units: where a parameter may have an effect
+PROBES = np.array([0.0, 0.3127, -0.7411])  # in these units, at the initial time: where a parameter may have an effect
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
 
