@@ -11,7 +11,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeVar
 
 from .expression.trees import Tree
-from .structs import entry
+from .structs import entry, with_attributes
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -54,6 +54,7 @@ class ForceEffect:
         return each(expression, self.trees)
 
 
+@with_attributes
 @dataclass(frozen=True)
 class System:
     """A system as its scene file describes it, before the derivation."""

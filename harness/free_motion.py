@@ -24,7 +24,7 @@ from .sandbox import Limits
 from .schema import FloatText
 from .shown import Shown
 from .source import Source
-from .structs import entry, group
+from .structs import entry, group, with_attributes
 
 Law = Mapping[str, Expr]
 
@@ -253,6 +253,7 @@ class Premises:
         )
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class FreeMotion(Shown):
     """The results about free motion of one scene.

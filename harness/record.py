@@ -19,7 +19,7 @@ from .language import translatable
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS
 from .sandbox import Limits
 from .source import Source
-from .structs import entry
+from .structs import entry, with_attributes
 
 if TYPE_CHECKING:
     from sympy import Expr
@@ -114,6 +114,7 @@ class Scene:
         return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
 
+@with_attributes
 @dataclass(frozen=True)
 class Record:
     """All results of Maxima's derivation for one scene file."""

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import MISSING, field, fields, is_dataclass
 from functools import cache, cached_property, partial
+from inspect import cleandoc
 from types import NoneType, UnionType
 from typing import Annotated, Any, NamedTuple, TypeVar, Union, get_args, get_origin
 
@@ -114,6 +115,25 @@ def structured(kind: type[Struct], content: Mapping[str, Any], **given: Any) -> 
         if name not in given and (place is None or place in content)
     }
     return kind(**read, **given)
+
+
+def with_attributes(kind: type[Struct]) -> type[Struct]:
+    """Append the entries of a class to its docstring, as attributes.
+
+    Parameters
+    ----------
+    kind : type
+        Dataclass whose fields are entries.
+
+    Returns
+    -------
+    type
+        The same class.
+    """
+    head, examples, rest = cleandoc(kind.__doc__).partition("\n\nExamples\n")
+    lines = [line for each in entries_of(kind) if each.name[0] != "_" for line in (each.name, f"    {each.text}")]
+    kind.__doc__ = "\n".join([f"{head}\n", "Attributes", "----------", *lines]) + examples + rest
+    return kind
 
 
 class Documented:

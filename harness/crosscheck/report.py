@@ -8,7 +8,7 @@ from typing import NamedTuple
 from ..language import translatable
 from ..record import LeftOut
 from ..shown import Shown
-from ..structs import computed, entry, group
+from ..structs import computed, entry, group, with_attributes
 
 
 class Verdict(StrEnum):
@@ -109,6 +109,7 @@ def verdict_on(
     )
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class CheckReport(Shown):
     """Verdicts on all equations of a record, in the record's order."""

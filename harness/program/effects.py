@@ -22,7 +22,7 @@ from ..language import translatable
 from ..sandbox import Limits
 from ..shown import Shown
 from ..source import Source
-from ..structs import entry
+from ..structs import entry, with_attributes
 from .c_function import compile_c
 from .motion_program import Program
 from .numpy_function import NumpyFunction
@@ -116,6 +116,7 @@ class EffectCost:
     seconds: float | None = entry("The same in time, for one evaluation.")
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class MeasuredCosts(Shown):
     """The costs of a scene, in operations and in time for one evaluation."""

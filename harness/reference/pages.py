@@ -16,13 +16,11 @@ from sphinx.application import Sphinx
 
 from ..cli import group
 from ..document_types import TYPES, schema
-from ..structs import entries_of
 from .entries import function_texts, part_texts, step_texts
 
 FOLDER = "reference/"
 SPECIAL = re.compile(r"`[^`]+`|([\\*_\[\]<>$|{}#~])")  # of Markdown; code, which keeps them
 COMMON = {"format": "Kind of the document.", "version": "Version of this kind of document."}  # of all schemas
-BEFORE_NUMPYDOC = 400  # whose handlers have the priority 500
 COMBINED = ("oneOf", "anyOf", "allOf")  # of schemas
 
 
@@ -46,7 +44,6 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.connect("sphinx-click-process-usage", _show_defaults)
     app.connect("sphinx-click-process-epilog", _add_examples)
     app.connect("autodoc-process-signature", _hide_constructor)
-    app.connect("autodoc-process-docstring", _add_entries, priority=BEFORE_NUMPYDOC)
     return {"parallel_read_safe": True}
 
 
@@ -100,13 +97,6 @@ def _add_examples(app: Sphinx, ctx: Context, lines: list[str]) -> None:
 def _hide_constructor(app: Sphinx, kind: str, name: str, *others: Any) -> tuple[str, str] | None:
     """Hide the arguments of classes that a user does not call."""
     return ("", "") if kind == "class" and name.count(".") > 1 else None
-
-
-def _add_entries(app: Sphinx, kind: str, name: str, described: Any, options: Any, lines: list[str]) -> None:
-    """Describe attributes that are entries of documents, if the docstring does not."""
-    if kind == "class" and "Attributes" not in lines and (stated := entries_of(described)):
-        section = [line for each in stated if each.name[0] != "_" for line in (each.name, f"    {each.text}")]
-        lines += ["", "Attributes", "----------", *section, ""]
 
 
 def _plain(text: str) -> str:

@@ -20,7 +20,7 @@ from ..number_texts import number, numbers
 from ..program.motion_program import Program
 from ..schema import NumberText
 from ..shown import Shown
-from ..structs import entry
+from ..structs import entry, with_attributes
 from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
@@ -39,21 +39,10 @@ class Continuation:
     velocities: Mapping[str, NumberTexts] = entry("Values of each velocity at these times.")
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class MotionSeries(Shown):
-    """The power series of one motion about its initial time.
-
-    Attributes
-    ----------
-    arithmetic : str
-        ``exact``, ``bigfloat(D)``, ``double``, ``extended``, ``quadruple`` or ``heyoka(D)``.
-    coordinates, multipliers, constraint_forces : mapping of str to tuple of str
-        Coefficients of (t - t0)^0 ... (t - t0)^order, by name.
-    sensitivities : mapping of str to tuple of str
-        Derivatives of these coefficients by parameters and initial values, by names such as ``d(x, m)``.
-    switch : str or None
-        A function with whose sign the motion is another than the series, or None where there is none.
-    """
+    """The power series of one motion about its initial time."""
 
     scene: str = entry("Name that the scene is assigned to.")
     title: str = entry("Title of the scene.")

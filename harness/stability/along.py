@@ -37,7 +37,7 @@ from ..simulation.matrices import Matrix, Vector
 from ..simulation.nominal import nominal_of
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Simulation
-from ..structs import Documented, computed, entry
+from ..structs import Documented, computed, entry, with_attributes
 from .equilibria import Stability, certain_distances
 from .linear_equations import LinearEquations, Point
 from .linearization import (
@@ -67,25 +67,20 @@ POINTS = lists_of({"type": "object", "additionalProperties": {"type": "number"}}
 PERTURBED = 1e-7  # relative error of Phi against which characteristic multipliers are certain
 
 
+@with_attributes
 @dataclass(frozen=True)
 class Floquet:
-    """Characteristic multipliers of a periodic motion.
-
-    Attributes
-    ----------
-    period : float
-    multipliers : ndarray, shape (2m,)
-        Eigenvalues of the monodromy matrix, complex, the largest first.
-    stability : Stability
-        Of the motion, by Lyapunov's theorem. Undecided if a multiplier lies on the unit circle, as one always does if
-        neither the equations nor the controls contain the time.
-    """
+    """Characteristic multipliers of a periodic motion."""
 
     period: float = entry("Last time less the first.")
     multipliers: Vector = entry(
-        "Eigenvalues of the monodromy matrix, real and imaginary parts, the largest first.", **PAIRS
+        "Eigenvalues of the monodromy matrix, complex, in JSON real and imaginary parts, shape (2m,), largest first.",
+        **PAIRS,
     )
-    stability: Stability = entry("Of the motion, by Lyapunov's theorem.")
+    stability: Stability = entry(
+        "Of the motion, by Lyapunov's theorem. Undecided if a multiplier lies on the unit circle, as one always does "
+        "if neither the equations nor the controls contain the time."
+    )
 
     @property
     def exponents(self) -> Vector:
@@ -93,27 +88,16 @@ class Floquet:
         return np.log(self.multipliers) / self.period
 
 
+@with_attributes
 @dataclass(frozen=True)
 class FreeDeviations:
-    """Small deviations from a free motion, to first order.
-
-    Attributes
-    ----------
-    staying : int
-        Dimension of the initial deviations that stay free at all nodes, of 2m.
-    sizes : ndarray, shape (k,)
-        The longest vector of multipliers of all initial deviations of length one, at each time.
-    basis : ndarray, shape (2m, staying)
-        Of the initial deviations that stay free, orthonormal.
-    stability : Stability or None
-        Of the multipliers, if the motion is periodic. None otherwise.
-    """
+    """Small deviations from a free motion, to first order."""
 
     staying: int = entry("Dimension of the initial deviations that stay free to first order, at most 2m.", minimum=0)
     sizes: Vector = entry(
-        "The longest vector of multipliers of all initial deviations of length one, at each time.", **VECTOR
+        "The longest vector of multipliers of all initial deviations of length one, at each time, shape (k,).", **VECTOR
     )
-    basis: Matrix = entry("Of the initial deviations that stay free, 2m rows.", **MATRIX)
+    basis: Matrix = entry("Of the initial deviations that stay free, orthonormal, shape (2m, staying).", **MATRIX)
     stability: Stability | None = entry("Of the multipliers of deviations; null if the motion is not periodic.")
 
 
@@ -134,25 +118,13 @@ def _shared(name: str, text: str) -> property:
     return property(computed(text, name, **rules)(lambda motion: getattr(motion.at[0], name)))
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class LinearizedMotion(Documented, Shown):
     """A linear system along a motion.
 
-    x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du''.
-
-    Attributes
-    ----------
-    scene : str
-    at : tuple of Linearization
-        At each of k times, with a basis that moves along continuously.
-    transition : ndarray, shape (k, 2m, 2m)
-        Phi: deviations are x(t) = Phi(t) x(t0). It jumps at switchings.
-    error : float
-        Estimated relative error of Phi at the end. An upper bound in most cases.
-    floquet : Floquet or None
-        None if the motion, or its equations, do not have its duration as a period.
-    free : FreeDeviations or None
-        None if the motion is not free, has no constraints, or switches.
+    x' = A(t) x + B_u(t) du + B_du(t) du' + B_ddu(t) du''. ``at`` has the linear system at each of k times, with a basis
+    that moves along continuously.
 
     Examples
     --------
@@ -164,10 +136,13 @@ class LinearizedMotion(Documented, Shown):
 
     scene: str = entry("Name that the scene is assigned to.")
     at: tuple[Linearization, ...]
-    transition: Matrix = entry("Phi at each time: x(t) = Phi(t) x(t0) for controls that do not deviate.", **MATRICES)
-    error: float = entry("Estimated relative error of Phi at the last time.", minimum=0)
+    transition: Matrix = entry(
+        "Phi at each time, shape (k, 2m, 2m): x(t) = Phi(t) x(t0) without deviations of controls. Jumps at switchings.",
+        **MATRICES,
+    )
+    error: float = entry("Estimated relative error of Phi at the last time, an upper bound in most cases.", minimum=0)
     floquet: Floquet | None = entry("Null if the motion and its equations do not repeat after the last time.")
-    free: FreeDeviations | None = entry("Null if the motion is not free.")
+    free: FreeDeviations | None = entry("Null if the motion is not free, has no constraints, or switches.")
 
     _coordinates = _shared("coordinates", "The n coordinates.")
     _controls = _shared("controls", "The r controls, whose deviations are inputs.")

@@ -30,7 +30,7 @@ from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
-from ..structs import Documented, computed, entry
+from ..structs import Documented, computed, entry, with_attributes
 from .equivalence import TURN, Equivalence
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized, perturbed_eigenvalues
@@ -71,22 +71,10 @@ class Stability(StrEnum):
     UNDECIDED = translatable("undecided")
 
 
+@with_attributes
 @dataclass(frozen=True)
 class Equilibrium:
-    """A state at rest.
-
-    Attributes
-    ----------
-    name : str
-        ``e1``, ``e2``, and so on.
-    coordinates, multipliers : mapping of str to float
-    stability : Stability
-    isolated : bool
-        Whether no others are next to it. False where that is not known.
-    linearization : Linearization
-    exact : mapping of str to SymPy expression
-        Exact values of coordinates and multipliers, if the equations are polynomial and small.
-    """
+    """A state at rest, with the linear system there."""
 
     name: str = entry("e1, e2, ...")
     coordinates: Mapping[str, float] = entry("Value of each coordinate, by its name.")
@@ -107,31 +95,10 @@ class Equilibrium:
         return self.linearization.eigenvalues
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class Equilibria(Documented, Shown):
     """Equilibria that were found: all of them if `complete` is True.
-
-    Attributes
-    ----------
-    scene : str
-    controls : mapping of str to float
-        Their constant values.
-    starts : int
-        Random starts of Newton's method.
-    found : tuple of Equilibrium
-        Of each family of solutions that are not isolated, one.
-    more : int
-        Further solutions of these families.
-    singular : int
-        Solutions in or near singular configurations, which are not classified.
-    turns : tuple of str
-        Coordinates that may be changed by whole turns.
-    reversals : tuple of tuple of str
-        Euler parameters of each body: both signs are the same orientation.
-    count : int or None
-        Number of real solutions up to turns and signs, by a Groebner basis and Hermite's form. None if the equations
-        are not polynomial, too large, or have infinitely many complex solutions, or if redundant constraints may leave
-        out solutions.
 
     Examples
     --------
@@ -146,12 +113,19 @@ class Equilibria(Documented, Shown):
     scene: str = entry("Name that the scene is assigned to.")
     controls: Mapping[str, float] = entry("Values of the controls.")
     starts: int = entry("Random starts of Newton's method.", minimum=1)
-    found: tuple[Equilibrium, ...] = entry("Those found; there may be others unless complete is true.")
+    found: tuple[Equilibrium, ...] = entry(
+        "Those found, of each family that is not isolated one; there may be others unless complete is true."
+    )
     more: int = entry("Further solutions of the families of those that are not isolated.", minimum=0)
     singular: int = entry("Solutions in or near singular configurations, which are not classified.", minimum=0)
     turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
     reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")
-    count: int | None = entry("Number of real solutions, exactly; null if it is not known.", minimum=0)
+    count: int | None = entry(
+        "Number of real solutions up to turns and signs, by a Groebner basis and Hermite's form; null if the equations "
+        "are not polynomial, too large, or have infinitely many complex solutions, or if redundant constraints may "
+        "leave out solutions.",
+        minimum=0,
+    )
 
     @property
     @computed("Whether those found are all, up to whole turns and signs of Euler parameters.")

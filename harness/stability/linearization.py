@@ -41,7 +41,7 @@ from ..simulation.nominal import nominal_of
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
-from ..structs import Documented, computed, entry
+from ..structs import Documented, computed, entry, with_attributes
 from .linear_equations import LinearEquations, Point
 from .tangent import Tangent
 
@@ -72,40 +72,12 @@ def by_rates(matrix: Mapping[str, Any]) -> Mapping[str, Any]:
     return {"type": "object", "properties": properties, "required": [*RATES], "additionalProperties": False}
 
 
+@with_attributes
 @dataclass(frozen=True, repr=False)
 class Linearization(Documented, Shown):
     """A linear system x' = A x + B_u du + B_du du' + B_ddu du''.
 
     Its output is y = C x + D_u du + ..., and its state x = (xi, eta).
-
-    Attributes
-    ----------
-    scene : str
-    at : float or None
-        The time, or None for an equilibrium.
-    at_rest : bool
-        True if velocities and accelerations vanish there. Otherwise A belongs to one time of a motion, and its
-        eigenvalues do not decide about stability.
-    coordinates : tuple of str
-        Names of the n coordinates.
-    leading : tuple of str
-        Names of the m coordinates to which the tangent coordinates belong.
-    controls, outputs : tuple of str
-        Names of the r inputs and of the entries of y: coordinates, velocities, multipliers, controls in forces that
-        servo-constraints find, outputs of the scene.
-    point : mapping of str to float
-        Time, state, accelerations, multipliers and controls with their derivatives, by name.
-    mass : ndarray, shape (n, n)
-        The mass matrix.
-    basis : ndarray, shape (n, m)
-        N: the coordinates deviate by N xi, N^T mass N = 1.
-    A : ndarray, shape (2m, 2m)
-    B : mapping of str to ndarray, shape (2m, r)
-        By ``u``, ``du`` and ``ddu``.
-    C : ndarray, shape (outputs, 2m)
-    D : mapping of str to ndarray, shape (outputs, r)
-    drawing : Drawing or None
-        Of the system. None at an equilibrium if it needs a control law.
 
     Examples
     --------
@@ -118,21 +90,27 @@ class Linearization(Documented, Shown):
     scene: str = entry("Name that the scene is assigned to.")
     at: float | None = entry("The time; null for an equilibrium.")
     at_rest: bool = entry(
-        "Whether velocities and accelerations vanish there; along a motion, eigenvalues belong to one time."
+        "Whether velocities and accelerations vanish there; else A belongs to one time, and its eigenvalues do not "
+        "decide about stability."
     )
     coordinates: Names = entry("The n coordinates.")
     leading: Names = entry("The m coordinates that the tangent coordinates belong to.")
     controls: Names = entry("The r controls, whose deviations are inputs.")
-    outputs: Names = entry("Quantities whose deviations C and D give.")
+    outputs: Names = entry(
+        "Names of the entries of y, whose deviations C and D give: coordinates, velocities, multipliers, controls that "
+        "servo-constraints find, outputs of the scene."
+    )
     point: Mapping[str, float] = entry(
         "Time, coordinates, velocities, accelerations, multipliers, and controls with their derivatives, by name."
     )
-    mass: Matrix = entry("The mass matrix, n rows.", **MATRIX)
-    basis: Matrix = entry("N, n rows of m numbers: the coordinates deviate by N xi, N^T A N = 1.", **MATRIX)
-    A: Matrix = entry("Of x = (xi, eta), 2m rows.", **MATRIX)
-    B: Mapping[str, Matrix] = entry("Parts of dx/dt from u, du/dt and ddu/dt2.", **by_rates(MATRIX))
-    C: Matrix = entry("Outputs by x.", **MATRIX)
-    D: Mapping[str, Matrix] = entry("Outputs by u, du/dt and ddu/dt2.", **by_rates(MATRIX))
+    mass: Matrix = entry("The mass matrix, shape (n, n).", **MATRIX)
+    basis: Matrix = entry("N, shape (n, m): the coordinates deviate by N xi, N^T mass N = 1.", **MATRIX)
+    A: Matrix = entry("Of x = (xi, eta), shape (2m, 2m).", **MATRIX)
+    B: Mapping[str, Matrix] = entry(
+        "Parts of dx/dt from u, du/dt and ddu/dt2, each of shape (2m, r).", **by_rates(MATRIX)
+    )
+    C: Matrix = entry("Outputs by x, shape (outputs, 2m).", **MATRIX)
+    D: Mapping[str, Matrix] = entry("Outputs by u, du/dt and ddu/dt2, each of shape (outputs, r).", **by_rates(MATRIX))
     drawing: Drawing | None
 
     @cached_property
