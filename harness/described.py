@@ -4,11 +4,11 @@ Trees are those of `holonom.expression.trees`. SymPy expressions are made of the
 use.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Annotated, ClassVar, NamedTuple, TypeVar
 
 from .expression.trees import Tree
 from .structs import entry, with_attributes
@@ -51,7 +51,7 @@ class ForceEffect:
     @cached_property
     def value(self) -> "tuple[Expr, ...]":
         """The forces."""
-        return each(expression, self.trees)
+        return tuple(map(expression, self.trees))
 
 
 @with_attributes
@@ -81,7 +81,7 @@ class System:
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
         """The g constraints."""
-        return each(expression, self.constraint_trees)
+        return tuple(map(expression, self.constraint_trees))
 
 
 class SystemTitle(NamedTuple):
@@ -137,20 +137,3 @@ def expression(tree: Tree) -> "Expr":
     from .expression.mathjson import to_sympy
 
     return to_sympy(tree)
-
-
-def each(read: Callable[[Any], Result], items: Sequence[Any]) -> tuple[Result, ...]:
-    """Read each item of a sequence.
-
-    Parameters
-    ----------
-    read : callable
-        Takes an item to its value.
-    items : sequence
-        Parts of a document.
-
-    Returns
-    -------
-    tuple
-    """
-    return tuple(read(item) for item in items)

@@ -14,7 +14,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
-from .described import Shape, System, Values, each, expression
+from .described import Shape, System, Values, expression
 from .expression.functions import FUNCTIONS
 from .expression.trees import JSON_INTEGERS, Tree
 from .failures import ErrorKind, HolonomError
@@ -129,7 +129,7 @@ class DescribedScene:
     @cached_property
     def servo_constraints(self) -> "tuple[Expr, ...]":
         """Expressions that the controls without a law make zero."""
-        return each(expression, self.servo_trees)
+        return tuple(map(expression, self.servo_trees))
 
 
 @dataclass(frozen=True)

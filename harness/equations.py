@@ -69,7 +69,7 @@ class Equations(Sequence["Equation"]):
         KeyError
             There is none.
         """
-        from .typeset.notebook import in_letters
+        from .typeset.notebook import TypesetSymbol
 
         relations = [(equation.id, relation) for equation in self._equations for relation in equation.relations]
         multipliers = {str(relation.left) for id_, relation in relations if id_ == "multipliers"}
@@ -77,7 +77,8 @@ class Equations(Sequence["Equation"]):
         if not found:
             raise KeyError(name)
         solved = (each for each in found if not multipliers & {str(symbol) for symbol in each.free_symbols})
-        return in_letters(next(solved, found[0]))
+        expression = next(solved, found[0])
+        return expression.xreplace({each: TypesetSymbol(each.name) for each in expression.free_symbols})
 
     def __repr__(self) -> str:
         return "\n".join(self.titles())

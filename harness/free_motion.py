@@ -13,7 +13,7 @@ from sympy import Add, Expr, Mul, Symbol
 
 from .crosscheck.report import CheckResult
 from .crosscheck.system import described_system
-from .described import System, Values, each
+from .described import System, Values
 from .documents import ask
 from .expression.mathjson import to_sympy
 from .expression.trees import Tree
@@ -103,7 +103,7 @@ class UniversalLaw:
     @cached_property
     def positive(self) -> tuple[Expr, ...]:
         """Expressions that are positive where the law holds, none if it always does."""
-        return each(to_sympy, self.positive_trees)
+        return tuple(map(to_sympy, self.positive_trees))
 
 
 @dataclass(frozen=True)
@@ -166,7 +166,7 @@ class SeriesOfControls:
             terms = [Mul(c, step**k, evaluate=k != 1 or c == 1) for k, c in enumerate(coefficients) if not c.is_zero]
             return Add(*terms, evaluate=False) if len(terms) > 1 else Add(*terms)
 
-        return {name: added_up(each(to_sympy, trees)) for name, trees in self.coefficients.items()}
+        return {name: added_up(tuple(map(to_sympy, trees))) for name, trees in self.coefficients.items()}
 
 
 @dataclass(frozen=True)
@@ -249,7 +249,7 @@ class Premises:
         return FreeMotionTrial(
             described_system(self.system, self.effects).without(self.redundant),
             {Symbol(name, real=True): value for name, value in self.parameter_values.items()},
-            self.time_span and each(to_sympy, self.time_span),
+            self.time_span and tuple(map(to_sympy, self.time_span)),
         )
 
 
@@ -290,7 +290,7 @@ class FreeMotion(Shown):
 
         None if (10) is not written out.
         """
-        return None if self.condition_trees is None else each(to_sympy, self.condition_trees)
+        return None if self.condition_trees is None else tuple(map(to_sympy, self.condition_trees))
 
 
 def free_motion(
@@ -330,27 +330,7 @@ def free_motion(
     Chen, Guo & Mei (2019), section 2, eq. (10).
     """
     text = ask(Document.FREE_MOTION, file, scene, order, settings=settings, limits=limits)
-    return with_verdicts(read_free_motion(text))
-
-
-def read_free_motion(text: str) -> FreeMotion:
-    """Read the results that Maxima wrote, without a check of their verdicts.
-
-    Parameters
-    ----------
-    text : str
-        JSON document.
-
-    Returns
-    -------
-    FreeMotion
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.formats.read`.
-    """
-    return read(Document.FREE_MOTION, text, FreeMotion)
+    return with_verdicts(read(Document.FREE_MOTION, text, FreeMotion))
 
 
 def with_verdicts(found: FreeMotion) -> FreeMotion:

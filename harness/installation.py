@@ -12,6 +12,7 @@ from .failures import ErrorKind, HolonomError
 from .files import shared, write_files, write_whole, written_before
 from .formats import Document, read
 from .maxima import LIBRARY
+from .preloaded import quoted
 from .reference.maxima_help import help_files
 from .sandbox import has_sandbox
 from .structs import entry
@@ -186,9 +187,9 @@ def stub_text(library: Path, helping: Path) -> str:
     """
     return (
         f"{MARK}\n\n"
-        f"load({_maxima_text(library / 'holonom.mac')})$\n"
-        f"load({_maxima_text(library / 'help.lisp')})$\n"
-        f"?holonom\\-help({_maxima_text(f'{helping}/')})$\n"
+        f"load({quoted(library / 'holonom.mac')})$\n"
+        f"load({quoted(library / 'help.lisp')})$\n"
+        f"?holonom\\-help({quoted(f'{helping}/')})$\n"
     )
 
 
@@ -197,8 +198,3 @@ def _is_own(stub: Path) -> bool:
         return stub.read_bytes().startswith(MARK.encode())
     except OSError:
         return False
-
-
-def _maxima_text(path: Path | str) -> str:
-    escaped = str(path).replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{escaped}"'

@@ -337,12 +337,12 @@ class Scene:
         >>> scene.symbols["x"]
         x
         """
-        from .typeset.notebook import typeset_symbols
+        from .typeset.notebook import TypesetSymbol
 
         described = self.record.system
         groups = ("coordinates", "velocities", "accelerations", "controls", "control_rates", "control_accelerations")
         names = [name for group in (*groups, "parameters", "multipliers") for name in getattr(described, group)]
-        return typeset_symbols([described.time, *names])
+        return {name: TypesetSymbol(name) for name in (described.time, *names)}
 
     def check(self) -> "CheckReport":
         """Compare every equation of the file with an independent SymPy evaluation.

@@ -60,7 +60,9 @@ def companion(
 
     Without a SCENE, make the textbook companion of the paper, otherwise pages about each SCENE.
     """
-    require_extras()
+    for package in EXTRAS:
+        if find_spec(package) is None:
+            raise missing_package(package)
     from ..companion.chapter import chapters_of_the_paper
     from ..companion.own_scenes import chapters_of_scenes
     from ..companion.site import make_site
@@ -77,10 +79,3 @@ def companion(
     done_line = f"The companion is in {directory}: open {directory / 'index.html'} in a browser."
     make_console().print(done_line, soft_wrap=True)
     return 0
-
-
-def require_extras() -> None:
-    """Raise if a package that the pages require is missing, and name it."""
-    for package in EXTRAS:
-        if find_spec(package) is None:
-            raise missing_package(package)

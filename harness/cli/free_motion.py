@@ -40,11 +40,11 @@ def free(
 
     from ..crosscheck.report import Verdict
     from ..display.free_motion import show_free_motion
-    from ..formats import Publication, published
+    from ..formats import Publication, published, read
     from ..free_document import free_motion_text
-    from ..free_motion import read_free_motion, with_verdicts
+    from ..free_motion import FreeMotion, with_verdicts
 
-    found = with_verdicts(read_free_motion(text))
+    found = with_verdicts(read(Document.FREE_MOTION, text, FreeMotion))
     present(published(Publication.FREE, free_motion_text(found)), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return DISAGREEMENT if contradicted else 0
@@ -53,4 +53,4 @@ def free(
 def _import_readers() -> None:
     """Import SymPy and the modules of the analysis."""
     from ..display.free_motion import show_free_motion  # noqa: F401
-    from ..free_motion import read_free_motion  # noqa: F401
+    from ..free_motion import with_verdicts  # noqa: F401

@@ -294,24 +294,9 @@ def at_start(checked: CheckedScene, pairs: Iterable[Pair]) -> tuple[Comparison, 
 
 
 def _rounded(values: Definitions) -> Definitions:
-    return {name: value for name, value in values.items() if is_rounded(value)}
-
-
-def is_rounded(value: sp.Expr) -> bool:
-    """Return True if a number may have been rounded.
-
-    Its fraction is as long as those of Newton's method.
-
-    Parameters
-    ----------
-    value : Expr
-        Number, or expression with numbers.
-
-    Returns
-    -------
-    bool
-    """
-    return any(number.q > 10**FEWEST_ROUNDED_DIGITS for number in value.atoms(sp.Rational))
+    """Return the values that may have been rounded, by their long fractions."""
+    longest = 10**FEWEST_ROUNDED_DIGITS
+    return {name: x for name, x in values.items() if any(number.q > longest for number in x.atoms(sp.Rational))}
 
 
 def determined_initial_values(checked: CheckedScene, relations: Relations) -> tuple[Comparison, ...]:

@@ -15,10 +15,11 @@ from mpmath import mp
 
 from ..description import Description
 from ..failures import HolonomError
+from ..formats import Document, read
 from ..number_texts import number, numbers
 from ..program.motion_problem import MotionProblem
 from ..program.request import Solve
-from ..series.power_series import MotionSeries, read_series
+from ..series.power_series import MotionSeries
 from ..series.request import EXACT
 from .compared_values import differing
 from .described_motion import DescribedMotion
@@ -72,7 +73,7 @@ def read_all_series(description: Description, answers: Mapping[str, Answer]) -> 
 
 def _series_of(description: Description, scene: str, answer: Answer | None) -> SceneSeries:
     if isinstance(answer, str):
-        return SceneSeries(scene, read_series(answer))
+        return SceneSeries(scene, read(Document.MOTION_SERIES, answer, MotionSeries))
     if isinstance(answer, HolonomError):
         return SceneSeries(scene, None, why_missing(answer))
     if holds_special_functions(description):

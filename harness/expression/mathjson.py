@@ -28,16 +28,12 @@ HEADS = {function: each.head for each, function in CLASSES.items() if each.head 
 }
 
 
-def _of_arity(arity: int) -> dict[str, Callable[..., Expr]]:
-    return {each.head: function for each, function in CLASSES.items() if each.arity == arity}
-
-
-UNARY: dict[str, Callable[..., Expr]] = {**_of_arity(1), "Negate": neg}
-BINARY: dict[str, Callable[..., Expr]] = {
-    "Power": sympy.Pow,
-    "Divide": truediv,
-    "Subtract": sub,
-    **_of_arity(2),
+APPLIED: dict[tuple[str, int], Callable[..., Expr]] = {
+    **{(each.head, each.arity): function for each, function in CLASSES.items()},
+    ("Negate", 1): neg,
+    ("Power", 2): sympy.Pow,
+    ("Divide", 2): truediv,
+    ("Subtract", 2): sub,
 }
 VARIADIC: dict[str, Callable[..., Expr]] = {"Add": sympy.Add, "Multiply": sympy.Mul}
 
@@ -104,14 +100,8 @@ def _read(tree: Tree) -> tuple[Callable[..., Expr], list]:
 
 
 def _builder(head: str, tree: list) -> Callable[..., Expr]:
-    arity = len(tree) - 1
-    if head in VARIADIC and arity >= 1:
-        function = VARIADIC[head]
-    elif head in BINARY and arity == 2:
-        function = BINARY[head]
-    elif head in UNARY and arity == 1:
-        function = UNARY[head]
-    else:
+    function = VARIADIC.get(head) or APPLIED.get((head, len(tree) - 1))
+    if function is None or len(tree) == 1:
         raise refusal(tree)
 
     def build(*arguments: Expr) -> Expr:

@@ -155,28 +155,8 @@ def scene_costs(file: Source | Path, request: Request, limits: Limits) -> Measur
         As `holonom.documents.ask` and `measure_costs`.
     """
     asked = (Document.EFFECTS, file, request.scene, request.solve)
-    return measure_costs(read_costs(ask(*asked, settings=request.settings, limits=limits)))
-
-
-def read_costs(text: str) -> Costs:
-    """Read the document of the costs of a scene.
-
-    Parameters
-    ----------
-    text : str
-        JSON document of the costs.
-
-    Returns
-    -------
-    Costs
-        Programs whose costs are to be measured.
-
-    Raises
-    ------
-    HolonomError
-        The text is not such a document, or one of its programs is none.
-    """
-    return read(Document.EFFECTS, text, Costs)
+    text = ask(*asked, settings=request.settings, limits=limits)
+    return measure_costs(read(Document.EFFECTS, text, Costs))
 
 
 def measure_costs(costs: Costs) -> MeasuredCosts:

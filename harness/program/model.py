@@ -114,24 +114,5 @@ def scene_model(file: Source | Path, request: Request, parameters: Sequence[str]
         if not NAME.fullmatch(name):
             raise HolonomError(ErrorKind.NOT_A_PARAMETER, detail=name)
     asked = (request.scene, request.solve, parameters)
-    return read_model(ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits))
-
-
-def read_model(text: str) -> Model:
-    """Read the document of a model.
-
-    Parameters
-    ----------
-    text : str
-        JSON document of the model.
-
-    Returns
-    -------
-    Model
-
-    Raises
-    ------
-    HolonomError
-        It is not such a document, or one of its programs is invalid.
-    """
+    text = ask(Document.MODEL, file, *asked, settings=request.settings, limits=limits)
     return read(Document.MODEL, text, Model)

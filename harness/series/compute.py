@@ -4,10 +4,10 @@ from pathlib import Path
 
 from ..documents import Argument, ask
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document
+from ..formats import Document, read
 from ..sandbox import Limits
 from ..source import Source
-from .power_series import MotionSeries, read_series
+from .power_series import MotionSeries
 from .request import SeriesRequest
 
 
@@ -43,7 +43,8 @@ def compute_series(file: Source | Path, request: SeriesRequest, limits: Limits) 
         return expand_by_heyoka(file, request, limits)
     directions = [_direction(name) for name in request.sensitivities]
     asked = (request.scene, request.order, request.digits, request.until, directions)
-    return read_series(ask(Document.MOTION_SERIES, file, *asked, settings=request.settings, limits=limits))
+    text = ask(Document.MOTION_SERIES, file, *asked, settings=request.settings, limits=limits)
+    return read(Document.MOTION_SERIES, text, MotionSeries)
 
 
 def _direction(name: str) -> Argument:

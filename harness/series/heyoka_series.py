@@ -144,7 +144,7 @@ def continue_motion(problem: MotionProblem, until: Fraction, precision: Precisio
     """
     last = precision.ratio(until)
     require_means(problem, precision, order_for(precision.digits + GUARD_DIGITS))
-    integrator = continuing_integrator(problem, precision)
+    integrator = _integrator(import_heyoka(), problem, precision, [])
     states = [(integrator.time, integrator.state.copy())]
     shortest = abs(last - integrator.time) * precision.number(f"1e-{precision.sure_digits}")
 
@@ -206,29 +206,6 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
         tol=precision.number(mpmath.nstr(mpmath.exp(-2 * order) * (1 + mpmath.mpf(1e-9)), 15)),
         opt_level=effort,
     )
-
-
-def continuing_integrator(problem: MotionProblem, precision: Precision) -> Any:
-    """Return heyoka's integrator of a motion, with the precision as tolerance.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion to continue.
-    precision : Precision
-        Numbers of heyoka.
-
-    Returns
-    -------
-    taylor_adaptive
-        Its state is that of the motion: coordinates, then velocities.
-
-    Raises
-    ------
-    HolonomError
-        heyoka is not installed.
-    """
-    return _integrator(import_heyoka(), problem, precision, [])
 
 
 def _integrator(

@@ -14,7 +14,7 @@ from typing import Any
 import mpmath
 
 from ..failures import ErrorKind, HolonomError
-from ..formats import Document, Publication, published, read
+from ..formats import Publication, published
 from ..language import translatable
 from ..number_texts import number, numbers
 from ..program.motion_program import Program
@@ -160,26 +160,6 @@ class SeriesDocument:
     continuation: Continuation | None = entry(
         "States at the times where the motion was expanded anew, where that is asked for.", None, optional=True
     )
-
-
-def read_series(text: str) -> MotionSeries:
-    """Read the power series that Maxima writes.
-
-    Parameters
-    ----------
-    text : str
-        JSON document of the power series.
-
-    Returns
-    -------
-    MotionSeries
-
-    Raises
-    ------
-    HolonomError
-        It is not such a document.
-    """
-    return read(Document.MOTION_SERIES, text, MotionSeries)
 
 
 def values_at(motion: MotionSeries, time: Fraction) -> Values:

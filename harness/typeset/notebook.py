@@ -1,11 +1,11 @@
 """Show equations and symbols in a notebook, as MathML and as LaTeX."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from html import escape
 from math import inf
 from typing import Any
 
-from sympy import Expr, Symbol
+from sympy import Symbol
 
 from ..record import Equation
 from .equations import latex_equation
@@ -35,36 +35,6 @@ class TypesetSymbol(Symbol):
         rate = RATE.fullmatch(self.name)  # dot(q1) is q1dot to SymPy, which draws the dot
         name = f"{rate[2]}{rate[1]}ot{rate[3]}" if rate else self.name
         return printer._print_Symbol(Symbol(name))
-
-
-def in_letters(expression: Expr) -> Expr:
-    """Return an expression with `TypesetSymbol` in place of every symbol.
-
-    Parameters
-    ----------
-    expression : Expr
-        Expression in the symbols of a derivation record.
-
-    Returns
-    -------
-    Expr
-    """
-    return expression.xreplace({symbol: TypesetSymbol(symbol.name) for symbol in expression.free_symbols})
-
-
-def typeset_symbols(names: Iterable[str]) -> Mapping[str, TypesetSymbol]:
-    """Return each name with its typeset symbol.
-
-    Parameters
-    ----------
-    names : iterable of str
-        Names of quantities, such as ``dot(q1)``.
-
-    Returns
-    -------
-    mapping of str to TypesetSymbol
-    """
-    return {name: TypesetSymbol(name) for name in names}
 
 
 def equations_html(equations: Iterable[Equation]) -> str:

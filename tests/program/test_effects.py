@@ -22,8 +22,8 @@ from holonom.crosscheck.premises import Premises, differences
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
 from holonom.failures import ErrorKind, HolonomError
-from holonom.formats import VERSION
-from holonom.program.effects import Measure, Status, _points, _regular_point, read_costs, scene_costs
+from holonom.formats import VERSION, Document, read
+from holonom.program.effects import Costs, Measure, Status, _points, _regular_point, scene_costs
 from holonom.program.forms import MotionProgram
 from holonom.program.motion_problem import motion_problem
 from holonom.program.numpy_function import NumpyFunction
@@ -318,15 +318,15 @@ def test_a_constant_control_has_no_rates(write_scene):
 def test_what_is_no_document_of_costs_is_refused_in_one_sentence(change):
     whole = document(PENDULUM.inputs, [], {"out": PENDULUM.inputs[0]})
     good = {"format": "holonom-effects", "version": VERSION, "program": whole, "terms": [], "effects": []}
-    assert read_costs(json.dumps(good)).effects == ()
+    assert read(Document.EFFECTS, json.dumps(good), Costs).effects == ()
     with pytest.raises(HolonomError) as refusal:
-        read_costs(json.dumps(good | change))
+        read(Document.EFFECTS, json.dumps(good | change), Costs)
     assert "\n" not in str(refusal.value)
 
 
 def test_text_that_is_not_json_is_refused():
     with pytest.raises(HolonomError):
-        read_costs("{")
+        read(Document.EFFECTS, "{", Costs)
 
 
 def test_an_effect_that_does_not_exist_is_refused(write_scene):

@@ -15,9 +15,10 @@ from refusing import failing
 
 import holonom
 from holonom.failures import ErrorKind
+from holonom.formats import Document, read
 from holonom.sandbox import Limits
 from holonom.series.compute import compute_series
-from holonom.series.power_series import MotionSeries, number, numbers, read_series, values_at
+from holonom.series.power_series import MotionSeries, number, numbers, values_at
 from holonom.series.radius import POLYNOMIAL, truncation_error
 from holonom.series.request import SeriesRequest
 
@@ -265,7 +266,7 @@ def test_long_exact_numbers_are_read():
 
 def test_what_is_no_series_is_refused():
     with failing(ErrorKind.NOT_A_DOCUMENT, "holonom-motion-series"):
-        read_series('{"order": 3}')
+        read(Document.MOTION_SERIES, '{"order": 3}', MotionSeries)
 
 
 def test_command_writes_the_document(holonom_here):

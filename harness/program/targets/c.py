@@ -60,7 +60,7 @@ def write_model(model: Model, name: str) -> dict[str, str]:
         f"{name}.h": filled(
             "library.h",
             **written,
-            explanation=comment_text_of(explanation(model)),
+            explanation=fill(comment_text(explanation(model)), 112, initial_indent="   ", subsequent_indent="   "),
             enumerations="\n".join(_enumerations(model, name.upper())),
             law=comment_text(", ".join(model.under_law) or "the scene has none"),
             found=comment_text(", ".join(model.found) or "the scene has none"),
@@ -90,22 +90,6 @@ def explanation(model: Model) -> str:
     ]
     given = " and ".join(filter(None, inputs)) or "none"
     return f"{title_of(model.motion)}. Inputs besides t, q and v: {given}. The others have the scene's values."
-
-
-def comment_text_of(paragraph: str) -> str:
-    """Return a paragraph as lines of a comment.
-
-    Parameters
-    ----------
-    paragraph : str
-        Any text.
-
-    Returns
-    -------
-    str
-        Lines of at most 112 characters.
-    """
-    return fill(comment_text(paragraph), 112, initial_indent="   ", subsequent_indent="   ")
 
 
 def _enumerations(model: Model, prefix: str) -> Iterator[str]:
