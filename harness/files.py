@@ -1,17 +1,16 @@
-"""Files and directories that are written completely or not at all."""
+"""Files that are written completely or not at all."""
 
 import errno
 import os
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
 from .failures import ErrorKind, HolonomError
 from .language import translatable
-from .temporary import remove_tree
 
 MANIFEST = ".holonom-written"
 DRAFTS = ".holonom-*.new"  # names of files that are about to get their own
@@ -203,7 +202,7 @@ def write_files(directory: Path, files: Mapping[str, str]) -> None:
         directory.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise _unwritable(directory, error) from None
-    manifest = _manifest({*written_before(directory), *files})
+    manifest = "".join(f"{name}\n" for name in sorted({*written_before(directory), *files}))
     for name, text in {MANIFEST: manifest, **files}.items():
         write_whole(directory / name, text)
 
@@ -249,42 +248,6 @@ def require_own_files(directory: Path, names: Iterable[str]) -> None:
             raise HolonomError(ErrorKind.UNRELATED_FILE, directory / name)
 
 
-def write_whole_directory(path: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write a directory completely or not at all.
-
-    In an existing directory, the files that its manifest lists are replaced or removed, each at once and only when
-    all new ones are on the disk. The others stay unchanged.
-
-    Parameters
-    ----------
-    path : Path
-        The directory. Its parent exists.
-    files : mapping of str to str or bytes
-        Content of each file, text in UTF-8, by its path in the directory.
-
-    Raises
-    ------
-    HolonomError
-        The directory cannot be written, or holds a file of one of the names that its manifest does not list. Its former
-        content is still there.
-    """
-    target = path.resolve()
-    require_own_files(path, files)
-    try:
-        with ExitStack() as opened:
-            written = {}
-            for name, content in files.items():
-                file = written[name] = opened.enter_context(_unnamed(target.parent))
-                file.write(content.encode() if isinstance(content, str) else content)
-                _to_disk(file)
-            if target.exists():
-                _put_into(target, written)
-            else:
-                _new_directory(target, written)
-    except OSError as error:
-        raise _unwritable(path, error) from None
-
-
 def _target(path: Path) -> Path:
     """Return the target of a file name, except for links of other users."""
     link = path
@@ -323,7 +286,7 @@ def _put_in_place(file: BinaryIO, target: Path) -> None:
     """Give an unnamed file the name, place and permissions of another file."""
     _take_permissions(file.fileno(), _status(target))
     with _opened(target.parent) as folder:
-        draft = _draft_name()
+        draft = f".holonom-{os.urandom(8).hex()}.new"
         try:
             _give_name(file, draft, folder)
             os.replace(draft, target.name, src_dir_fd=folder, dst_dir_fd=folder)
@@ -357,10 +320,6 @@ def _opened(folder: Path) -> Iterator[int]:
         os.close(descriptor)
 
 
-def _draft_name() -> str:
-    return f".holonom-{os.urandom(8).hex()}.new"
-
-
 def _give_name(file: BinaryIO, name: str, folder: int) -> None:
     """Give an unnamed file a new name.
 
@@ -376,34 +335,6 @@ def _give_name(file: BinaryIO, name: str, folder: int) -> None:
             shutil.copyfileobj(file, copy)
             os.fchmod(copy.fileno(), mode)
             _to_disk(copy)
-
-
-def _new_directory(target: Path, files: Mapping[str, BinaryIO]) -> None:
-    """Put files without names into a new directory."""
-    draft = target.with_name(_draft_name())
-    draft.mkdir()
-    try:
-        _put_into(draft, files)
-        draft.rename(target)
-    except BaseException:
-        remove_tree(draft)
-        raise
-
-
-def _put_into(directory: Path, files: Mapping[str, BinaryIO]) -> None:
-    """Put unnamed files into a directory, and remove others that its manifest lists."""
-    gone = written_before(directory) - files.keys()
-    write_whole(directory / MANIFEST, _manifest({*gone, *files}))
-    for name, file in files.items():
-        (directory / name).parent.mkdir(parents=True, exist_ok=True)
-        _put_in_place(file, directory / name)
-    for name in gone:
-        (directory / name).unlink(missing_ok=True)
-    write_whole(directory / MANIFEST, _manifest(files))
-
-
-def _manifest(names: Iterable[str]) -> str:
-    return "".join(f"{name}\n" for name in sorted(names))
 
 
 def _unwritable(path: Path, error: OSError) -> Exception:

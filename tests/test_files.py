@@ -5,25 +5,18 @@ import os
 import stat
 import subprocess
 import sys
-from itertools import count
 from pathlib import Path
 
 import pytest
 
 from holonom.failures import ErrorKind, HolonomError
 from holonom.files import (
-    MANIFEST,
     require_own_files,
     whole_file,
     write_files,
     write_whole,
-    write_whole_directory,
+    written_before,
 )
-
-
-def write_and_require(directory: Path, files: dict[str, str]) -> None:
-    require_own_files(directory, files)
-    write_files(directory, files)
 
 
 def test_replaces_what_was_there_and_leaves_nothing_else(tmp_path):
@@ -147,53 +140,14 @@ def test_two_processes_that_write_one_file_leave_one_of_the_two(tmp_path):
     assert os.listdir(tmp_path) == ["file"]
 
 
-def test_a_new_directory_appears_whole(tmp_path, monkeypatch):
-    """A disk that is full in the middle leaves nothing."""
-    calls = count()
-
-    def fill(descriptor: int) -> None:
-        if next(calls) == 2:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr("os.fsync", fill)
-    with pytest.raises(HolonomError) as raised:
-        write_whole_directory(tmp_path / "pages", {"a": "1", "b": "2", "c/d": "3"})
-    assert raised.value.kind is ErrorKind.DISK_FULL
-    assert os.listdir(tmp_path) == []
-
-
-def test_a_disk_that_is_full_leaves_a_directory_as_it_was(tmp_path, monkeypatch):
-    directory = tmp_path / "pages"
-    write_whole_directory(directory, {"a": "1", "b": "2"})
-
-    def fill(descriptor: int) -> None:
-        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-
-    monkeypatch.setattr("os.fsync", fill)
-    with pytest.raises(HolonomError):
-        write_whole_directory(directory, {"a": "new", "c": "3"})
-    assert (directory / "a").read_text() == "1"
-    assert sorted(os.listdir(directory)) == sorted([MANIFEST, "a", "b"])
-
-
-def test_a_directory_keeps_what_was_not_written_by_us(tmp_path):
-    directory = tmp_path / "pages"
-    write_whole_directory(directory, {"index.html": "first", "part/old.html": "first"})
-    (directory / "part" / "own.mac").write_text("mine")
-    write_whole_directory(directory, {"index.html": "second"})
-    assert (directory / "index.html").read_text() == "second"
-    assert (directory / "part" / "own.mac").read_text() == "mine"
-    assert not (directory / "part" / "old.html").exists()
-    assert os.listdir(tmp_path) == ["pages"]
-
-
-@pytest.mark.parametrize("write", [write_whole_directory, write_and_require])
-def test_a_foreign_file_of_the_same_name_is_refused(write, tmp_path):
-    directory = tmp_path / "pages"
-    write_whole_directory(directory, {"index.html": "first"})
+def test_a_foreign_file_of_the_same_name_is_refused(tmp_path):
+    directory = tmp_path / "library"
+    write_files(directory, {"crane.c": "first"})
     (directory / "CMakeLists.txt").write_text("mine")
+    require_own_files(directory, ["crane.c"])
     with pytest.raises(HolonomError) as raised:
-        write(directory, {"index.html": "second", "CMakeLists.txt": "ours"})
+        require_own_files(directory, ["crane.c", "CMakeLists.txt"])
     assert raised.value.kind is ErrorKind.UNRELATED_FILE
+    write_files(directory, {"crane.h": "second"})
     assert (directory / "CMakeLists.txt").read_text() == "mine"
-    assert (directory / "index.html").read_text() == "first"
+    assert written_before(directory) == {"crane.c", "crane.h"}

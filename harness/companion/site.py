@@ -11,8 +11,9 @@ from sphinx.locale import translators
 from sphinx.util.docutils import docutils_namespace, patch_docutils
 
 from ..failures import ErrorKind, HolonomError
-from ..files import write_whole_directory
+from ..files import write_files
 from ..language import LANGUAGES, gettext, speaking
+from ..temporary import remove_tree
 from .chapter import SOURCES, Chapter
 from .directives import FILES, RESULTS
 from .own_scenes import texts_of_scenes
@@ -125,8 +126,8 @@ def _texts_about(scenes: Sequence[Path], directory: Path) -> Path:
     """Write the texts of the pages about scene files to a new folder. Return it."""
     folder = directory / TEXTS
     with _errors_about(directory):
-        directory.mkdir(parents=True, exist_ok=True)
-        write_whole_directory(folder, texts_of_scenes(scenes))
+        remove_tree(folder)
+        write_files(folder, texts_of_scenes(scenes))
     return folder
 
 

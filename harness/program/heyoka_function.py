@@ -1,4 +1,4 @@
-"""Motion programs in heyoka: expressions, compiled functions and dynamics.
+"""Motion programs in heyoka: expressions and dynamics.
 
 A value that is used twice is one expression object, so heyoka recognizes shared values.
 """
@@ -9,9 +9,6 @@ from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..extras import missing_package, require_room
 from ..failures import ErrorKind, HolonomError
@@ -24,59 +21,6 @@ if TYPE_CHECKING:
 # Operations from which heyoka's compact mode is taken. Measured on chains: at 2000 both modes compile in the same time
 # and compact code is a quarter slower; at 4000 it compiles in 60 % of the time and is as fast.
 COMPACT_FROM = 3000
-
-
-class HeyokaFunction:
-    """A motion program, compiled by heyoka in double precision.
-
-    Parameters
-    ----------
-    compact : bool
-        Whether to compile in heyoka's compact mode.
-    """
-
-    def __init__(self, program: Program, compact: bool) -> None:
-        heyoka = import_heyoka()
-        self.inputs = program.inputs
-        self.outputs = tuple(program.outputs)
-        variables = _variables(program)
-        results = heyoka_expressions(program, variables)
-        self._run = heyoka.cfunc(list(results.values()), vars=list(variables.values()), compact_mode=compact)
-
-    def __call__(self, inputs: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate the program.
-
-        Parameters
-        ----------
-        inputs : array_like, shape (inputs,) or (inputs, points)
-            Inputs of the program in its order.
-
-        Returns
-        -------
-        ndarray, shape (outputs,) or (outputs, points)
-            Where the program's pivots vanish, infinities and nans.
-        """
-        return self._run(np.ascontiguousarray(inputs, dtype=float))
-
-
-def heyoka_function(program: Program) -> HeyokaFunction:
-    """Compile a program with heyoka.
-
-    Parameters
-    ----------
-    program : Program
-
-    Returns
-    -------
-    HeyokaFunction
-        Function in double precision.
-
-    Raises
-    ------
-    HolonomError
-        heyoka is not installed.
-    """
-    return HeyokaFunction(program, compact=program.operations >= COMPACT_FROM)
 
 
 def heyoka_expressions(

@@ -24,7 +24,7 @@ from timing import TooLong, many_points, time_limit
 
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.c_function import CFunction, compile_c, load_c
-from holonom.program.heyoka_function import heyoka_function
+from holonom.program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
 from holonom.program.motion_program import Program
 from holonom.program.timing import Timer
 
@@ -110,7 +110,10 @@ def compiled_rows(
     yield row(seconds, operations, one, many_points(function, given))
     if method == OURS:
         start = time.perf_counter()
-        jit = heyoka_function(program)
+        variables = {name: import_heyoka().expression(name) for name in program.inputs}
+        results = heyoka_expressions(program, variables)
+        compact = program.operations >= COMPACT_FROM
+        jit = import_heyoka().cfunc(list(results.values()), vars=list(variables.values()), compact_mode=compact)
         seconds = time.perf_counter() - start
         yield Row(HEYOKA, links, derive, seconds, operations, None, many_points(jit, given))
 

@@ -2,7 +2,7 @@
 
 import json
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from hypothesis import assume
 from hypothesis import strategies as st
 from reference import IllConditioned, reference
 
+from holonom.program.heyoka_function import heyoka_expressions, import_heyoka
 from holonom.program.motion_program import Program, read_program
 
 Tree = Any
@@ -158,3 +159,11 @@ def assume_well_conditioned(written: Program) -> None:
             reference(written, point.tolist())
     except IllConditioned:
         assume(False)
+
+
+def heyoka_function(written: Program, *, compact: bool = False) -> Callable[[np.ndarray], np.ndarray]:
+    """The program compiled by heyoka."""
+    variables = {name: import_heyoka().expression(name) for name in written.inputs}
+    results = heyoka_expressions(written, variables)
+    function = import_heyoka().cfunc(list(results.values()), vars=list(variables.values()), compact_mode=compact)
+    return lambda points: function(np.ascontiguousarray(points, dtype=float))

@@ -8,12 +8,12 @@ import mpmath
 import numpy as np
 import pytest
 import sympy
+from programs import heyoka_function
 from refusing import refused
 
 import holonom
 from holonom.crosscheck.report import Verdict
 from holonom.program.c_function import compile_c
-from holonom.program.heyoka_function import heyoka_function
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.targets import python
 

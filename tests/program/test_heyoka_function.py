@@ -11,7 +11,7 @@ from programs import PENDULUM, chain, program
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.program.heyoka_function import dynamics, heyoka_expressions, heyoka_function
+from holonom.program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 
 GRAVITY = {"g": heyoka.expression(9.81)}
 
@@ -64,7 +64,7 @@ def test_a_missing_control_law_is_named():
 def test_a_missing_extra_is_one_sentence_that_names_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "heyoka", None)
     with failing(ErrorKind.EXTRA_MISSING, "heyoka"):
-        heyoka_function(PENDULUM)
+        import_heyoka()
 
 
 def test_machine_code_is_not_written_to_the_home_directory(tmp_path):

@@ -6,11 +6,18 @@ import mpmath
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from programs import PENDULUM, assume_well_conditioned, chain, program, random_points, random_programs
+from programs import (
+    PENDULUM,
+    assume_well_conditioned,
+    chain,
+    heyoka_function,
+    program,
+    random_points,
+    random_programs,
+)
 from reference import assert_within_bounds, reference
 
 from holonom.program.c_function import compile_c
-from holonom.program.heyoka_function import HeyokaFunction, heyoka_function
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.targets import python
 
@@ -76,7 +83,7 @@ def test_sums_of_thousands_of_terms(terms):
 def test_compact_mode_gives_the_same_numbers():
     written = chain(3)
     points = random_points(written)
-    plain, compact = (HeyokaFunction(written, compact)(points) for compact in (False, True))
+    plain, compact = (heyoka_function(written, compact=compact)(points) for compact in (False, True))
     assert compact == pytest.approx(plain, rel=1e-9)
 
 
