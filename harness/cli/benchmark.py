@@ -9,7 +9,7 @@ from ..options import options_of
 from ..sandbox import Limits
 from ..simulation.request import SimulationRequest
 from .group import holonom
-from .options import asks_one_scene, present, runs_scenes, takes, writes_json
+from .options import FAILED, asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile
 
 if TYPE_CHECKING:
@@ -49,9 +49,6 @@ def accuracy(
 
         Picture(study_figure(done)).save(plot_file)
     return 0
-
-
-FAILED = 1
 
 
 @holonom.command(examples=["stability --short", "stability --plot stability.svg --json stability.json"])

@@ -13,7 +13,7 @@ from ..sandbox import Limits
 from ..supervisor import doing, time_to_limit
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, present, publish, runs_scenes, takes_settings, writes_json
+from .options import FAILED, present, publish, runs_scenes, takes_settings, writes_json
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile, as_given
 
 if TYPE_CHECKING:
@@ -125,7 +125,7 @@ def check(
     if errors:
         raise ExceptionGroup("scenes without a check", errors)
     unwanted = (Verdict.DISAGREES,) if allow_undecided else (Verdict.DISAGREES, Verdict.UNDECIDED)
-    return DISAGREEMENT if any(report.count(*unwanted) for _, report in reports) else 0
+    return FAILED if any(report.count(*unwanted) for _, report in reports) else 0
 
 
 def _checked(source: "Source", settings: dict[str, str], seed: str, results: Sequence["Content"]) -> "CheckReport":

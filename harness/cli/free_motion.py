@@ -8,7 +8,7 @@ from ..program.request import FreeRequest
 from ..sandbox import Limits
 from .background import run_in_background
 from .group import holonom
-from .options import DISAGREEMENT, asks_one_scene, present, runs_scenes, takes, writes_json
+from .options import FAILED, asks_one_scene, present, runs_scenes, takes, writes_json
 
 if TYPE_CHECKING:
     from ..program.request import Request
@@ -47,7 +47,7 @@ def free(
     found = with_verdicts(read(Document.FREE_MOTION, text, FreeMotion))
     present(published(Publication.FREE, free_motion_text(found)), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
-    return DISAGREEMENT if contradicted else 0
+    return FAILED if contradicted else 0
 
 
 def _import_readers() -> None:

@@ -15,12 +15,11 @@ from typing import Any
 import click
 
 from ..extras import naming_the_extra
-from ..failures import HolonomError, HolonomWarning
+from ..failures import MACHINE, HolonomError, HolonomWarning
 from ..hidden import visible
 from ..supervisor import supervise
 from .outputs import STANDARD_INPUT, Command
 
-MACHINE_AT_FAULT = 3
 INTERNAL_ERROR = 70
 INTERRUPTED = 130
 PIPE_CLOSED = 141
@@ -59,14 +58,14 @@ class Commands(click.Group):
         except BrokenPipeError:
             return PIPE_CLOSED
         except MemoryError:
-            return _report("not enough memory. Reduce the problem.", MACHINE_AT_FAULT)
+            return _report("not enough memory. Reduce the problem.", MACHINE)
         except OSError as error:
             return _system_error(error)
         except (click.ClickException, click.Abort, click.exceptions.Exit):
             raise
         except Exception as error:
             if sys.flags.optimize > 1:
-                return _report(NO_DOCSTRINGS, MACHINE_AT_FAULT)
+                return _report(NO_DOCSTRINGS, MACHINE)
             return _internal_error(error, verbose)
 
     def resolve_command(
@@ -166,7 +165,7 @@ def run() -> int:
     warnings.showwarning = _show_warning
     try:
         status = holonom(standalone_mode=False, obj=OWN_PROCESS) or 0
-        with suppress(OSError) if status == MACHINE_AT_FAULT else nullcontext():  # reported already
+        with suppress(OSError) if status == MACHINE else nullcontext():  # reported already
             sys.stdout.flush()
         return status
     except click.ClickException as error:
@@ -230,7 +229,7 @@ def _report(message: str, status: int) -> int:
 
 def _system_error(error: OSError) -> int:
     what = f"{error.filename}: {error.strerror}" if error.filename else error.strerror or str(error)
-    return _report(f"the operating system reports: {what}.", MACHINE_AT_FAULT)
+    return _report(f"the operating system reports: {what}.", MACHINE)
 
 
 def _rejected(error: HolonomError, verbose: bool, options: Collection[str], standing_in: str) -> int:

@@ -18,7 +18,18 @@ from ..series.request import AUTOMATIC, EXACT, SeriesRequest
 from ..simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from .background import run_in_background
 from .group import OWN_PROCESS, holonom
-from .options import IntegerRange, as_time, asks_one_scene, json_text, present, publish, runs_scenes, takes, writes_json
+from .options import (
+    FAILED,
+    IntegerRange,
+    as_time,
+    asks_one_scene,
+    json_text,
+    present,
+    publish,
+    runs_scenes,
+    takes,
+    writes_json,
+)
 from .outputs import STANDARD_OUTPUT, OutputFile
 
 if TYPE_CHECKING:
@@ -69,7 +80,6 @@ def series(
 
 
 SAMPLES_OF_A_PLOT = 1001
-FAILED = 1  # exit status of a result that is none
 
 
 @holonom.command(

@@ -19,7 +19,7 @@ from ..sandbox import UNSANDBOXED, Limits, Sandbox, is_isolated
 from ..supervisor import EXPECTED, limit_time
 from .outputs import STANDARD_OUTPUT, OutputFile, SceneFile
 
-DISAGREEMENT = 1  # exit status where SymPy contradicts Maxima
+FAILED = 1  # exit status of a check that fails, and of a result that is none
 LONGEST = 1e9  # seconds of a time limit: 30 years
 MOST_MEMORY = 2**30  # MiB of a memory limit
 

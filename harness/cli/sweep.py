@@ -11,10 +11,8 @@ from ..program.request import Request
 from ..sandbox import Limits
 from ..sweeps.request import SweepRequest
 from .group import holonom
-from .options import IntegerRange, asks_one_scene, present, runs_scenes, takes, writes_json
+from .options import FAILED, IntegerRange, asks_one_scene, present, runs_scenes, takes, writes_json
 from .outputs import OutputFile, as_given
-
-FAILED = 1  # exit status of a sweep none of whose rows came about
 
 
 @holonom.command(

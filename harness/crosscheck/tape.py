@@ -14,12 +14,11 @@ from heapq import heapify, heappop, heappush
 
 from mpmath import mp
 
-from ..expression.functions import FUNCTIONS
+from ..expression.functions import CONSTANTS, FUNCTIONS
 from ..expression.trees import Tree, converted, integer, refusal
 from .irregular_point import IrregularPoint
 from .taylor import Polynomial, Taylor
 
-CONSTANTS = {"Pi": lambda: +mp.pi, "ExponentialE": lambda: +mp.e, "EulerGamma": lambda: +mp.euler}
 OF_THE_TABLE = {each.head: each for each in FUNCTIONS if each.slope}
 REMEMBERED = 2**12  # Taylor coefficients of functions at numbers
 RELATIONS = {"Greater": 1, "GreaterEqual": 1, "Less": -1, "LessEqual": -1}
@@ -227,8 +226,8 @@ class Tape:
 
 
 def _quantity(name: str, known: Mapping[str, Polynomial]) -> Polynomial:
-    if name in CONSTANTS:
-        return (CONSTANTS[name](),)
+    if name in CONSTANTS and CONSTANTS[name].mpmath:
+        return (+getattr(mp, CONSTANTS[name].mpmath),)
     if name in ("True", "False"):
         return (mp.mpf(1 if name == "True" else -1),)
     if name not in known:

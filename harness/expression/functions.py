@@ -1,10 +1,29 @@
-"""The functions of expressions: names in all notations, derivatives and behaviour."""
+"""Functions and constants of expressions: names, derivatives and behaviour."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
 from typing import Any
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A constant."""
+
+    scene: str  # in scene files, as Maxima calls it
+    latex: str
+    sympy: str
+    mpmath: str = ""  # empty where it is no real number
+
+
+# By the name in MathJSON.
+CONSTANTS = {
+    "Pi": Constant("%pi", r"\pi", "pi", "pi"),
+    "ExponentialE": Constant("%e", "e", "E", "e"),
+    "ImaginaryUnit": Constant("%i", "i", "I"),
+    "EulerGamma": Constant("%gamma", r"\gamma", "EulerGamma", "euler"),
+}
 
 
 class Behaviour(Enum):

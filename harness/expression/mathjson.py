@@ -10,14 +10,14 @@ import sympy
 from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbol
 
 from . import elliptic
-from .functions import FUNCTIONS
+from .functions import CONSTANTS, FUNCTIONS
 from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
 
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 DOUBLE_BITS = 53
 
-CONSTANTS = {"Pi": S.Pi, "ExponentialE": S.Exp1, "ImaginaryUnit": S.ImaginaryUnit, "EulerGamma": S.EulerGamma}
-CONSTANT_NAMES = {constant: name for name, constant in CONSTANTS.items()}
+SYMBOLS = {name: getattr(sympy, each.sympy) for name, each in CONSTANTS.items()}
+CONSTANT_NAMES = {constant: name for name, constant in SYMBOLS.items()}
 NOT_NUMBERS = (S.ComplexInfinity, S.Infinity, S.NegativeInfinity, S.NaN)
 
 CLASSES = {each: getattr(elliptic if hasattr(elliptic, each.in_sympy) else sympy, each.in_sympy) for each in FUNCTIONS}
@@ -89,7 +89,7 @@ def _read(tree: Tree) -> tuple[Callable[..., Expr], list]:
         case int() | dict() | ["Rational", *_]:
             value = _number(tree)
         case str():
-            value = CONSTANTS[tree] if tree in CONSTANTS else _symbol(tree)
+            value = SYMBOLS[tree] if tree in SYMBOLS else _symbol(tree)
         case ["Subscript", str(name), _, *_]:
             value = Indexed(IndexedBase(_symbol(name)), *map(_integer, tree[2:]))
         case [str(head), *arguments]:

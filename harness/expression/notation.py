@@ -7,12 +7,11 @@ a term, negative powers and denominators stand once below a stroke.
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 
-from .functions import FUNCTIONS
+from .functions import CONSTANTS, FUNCTIONS
 from .infix import Formula, Rank, atom, call
 from .trees import FLOAT, INTEGER, Tree, converted, integer, quantity, refusal
 
-CONSTANTS = {"Pi": "%pi", "ExponentialE": "%e", "ImaginaryUnit": "%i", "EulerGamma": "%gamma"}
-CONSTANTS |= {"True": "true", "False": "false"}
+WORDS = {name: each.scene for name, each in CONSTANTS.items()} | {"True": "true", "False": "false"}
 BETWEEN = {
     "Greater": ">",
     "GreaterEqual": ">=",
@@ -65,7 +64,7 @@ def _expanded(tree: Tree) -> Expanded:
         case bool():
             raise refusal(tree)
         case str():
-            text = CONSTANTS.get(tree) or quantity(tree)
+            text = WORDS.get(tree) or quantity(tree)
         case int() | dict():
             text = _digits(tree)
         case ["Subscript", str(name), _, *_]:

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..failures import ErrorKind, HolonomError
+from .functions import CONSTANTS
 
 Tree = int | str | dict | list
 
@@ -29,7 +30,7 @@ INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
 FLOAT = re.compile(r"-?0*(\d+)\.?(\d*)(?:[eE][+-]?\d{1,9})?")
 # A name, a time derivative of one, or the initial value of either: q1, %omega, dot(q1), ddot(u), q1_0, dot(q1)_0.
 NAME = re.compile(r"%?[^\W\d][\w%]*|d{1,3}ot\(%?[^\W\d][\w%]*\)\w*")
-RESERVED = frozenset({"Pi", "ExponentialE", "ImaginaryUnit", "EulerGamma", "True", "False"})
+RESERVED = frozenset({*CONSTANTS, "True", "False"})
 
 
 @dataclass(frozen=True)

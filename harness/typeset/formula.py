@@ -20,7 +20,7 @@ from itertools import chain, groupby
 from math import inf
 from typing import NamedTuple
 
-from ..expression.functions import FUNCTIONS
+from ..expression.functions import CONSTANTS, FUNCTIONS
 from ..expression.mathjson import Tree
 from ..failures import ErrorKind, HolonomError
 from .boxes import (
@@ -53,7 +53,6 @@ from .boxes import (
 )
 from .quantities import indexed_box, name_box
 
-CONSTANTS = {"Pi": r"\pi", "ExponentialE": "e", "ImaginaryUnit": "i", "EulerGamma": r"\gamma"}
 NAMES = {each.head: each.operator for each in FUNCTIONS if each.latex and not each.of_an_order}
 NAMES |= {"Determinant": r"\det"}
 OF_AN_ORDER = {each.head: each.latex for each in FUNCTIONS if each.of_an_order}
@@ -255,7 +254,7 @@ def _set(tree: Tree) -> Box:
     """Typeset a formula on one line."""
     match tree:
         case str():
-            return word(CONSTANTS[tree], 1) if tree in CONSTANTS else name_box(tree)
+            return word(CONSTANTS[tree].latex, 1) if tree in CONSTANTS else name_box(tree)
         case _ if _is_sum(tree):
             terms = enumerate(signed_terms(tree))
             return beside(*(box for k, term in terms for box in (_sign(term, k), _factor(term.content))))
