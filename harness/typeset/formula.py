@@ -150,6 +150,16 @@ def _parts(tree: Tree, room: float) -> list[Part]:
             return _product_parts(factors, room)
         case ["Marked", colour, inner]:
             return [part._replace(box=coloured(part.box, colour)) for part in _parts(inner, room)]
+        case ["Sqrt", radicand]:
+            return _bracketed_parts(OPENING, radicand, above(CLOSING, _set(["Rational", 1, 2])), room)
+        case ["Divide", 1, ["Power", base, int(exponent)]]:
+            return _parts(["Power", base, -exponent], room)
+        case ["Divide", 1, divisor]:
+            return _bracketed_parts(OPENING, divisor, above(CLOSING, _set(-1)), room)
+        case ["Power", base, exponent] if _is_sum(base):
+            return _bracketed_parts(OPENING, base, above(CLOSING, _set(exponent)), room)
+        case [str(head), argument] if head in NAMES:
+            return _bracketed_parts(beside(word(NAMES[head], 3), OPENING), argument, CLOSING, room)
         case _:
             return [Part(whole)]
 
@@ -185,7 +195,11 @@ def _factor_parts(tree: Tree, room: float) -> list[Part]:
     whole = _factor(tree)
     if whole.width <= room:
         return [Part(whole)]
-    return _before(_after(OPENING, _parts(tree, room - OPENING.width - CLOSING.width)), CLOSING)
+    return _bracketed_parts(OPENING, tree, CLOSING, room)
+
+
+def _bracketed_parts(opening: Box, inner: Tree, closing: Box, room: float) -> list[Part]:
+    return _before(_after(opening, _parts(inner, room - opening.width - closing.width)), closing)
 
 
 def signed_terms(tree: Tree) -> list[SignedTerm]:
