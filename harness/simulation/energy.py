@@ -46,8 +46,6 @@ class EnergyBalance:
     ----------
     conservative : bool
         Whether the power vanishes: then there is nothing to integrate. Power that may hide is not taken for none.
-    passing : float
-        The largest work in a part of an interval: a pulse within a step may give energy and take it back.
     """
 
     def __init__(
@@ -65,7 +63,6 @@ class EnergyBalance:
         power = computing(problem.energy, {"power"})
         hidden = bool(problem.tables) or may_hide(power, problem.parameters)
         self._of_time = "t" in names_used(power)
-        self.passing = 0.0
         self.conservative = (
             not self._with_multipliers and not hidden and self._without_power(2 * len(problem.coordinates))
         )
@@ -191,8 +188,12 @@ class EnergyBalance:
             )
         return np.array([ratio(Fraction(2 * k + 1, 2)) * column * weights for k, column in enumerate(columns)])
 
-    def works(self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]) -> Numbers:
+    def works(
+        self, starts: Numbers, ends: Numbers, between: Sequence[tuple[Numbers, Numbers]]
+    ) -> tuple[Numbers, float]:
         """Return the integrals of the power over k intervals of the motion.
+
+        A pulse within a step may give energy and take it back.
 
         Parameters
         ----------
@@ -203,16 +204,17 @@ class EnergyBalance:
 
         Returns
         -------
-        ndarray, shape (k,)
+        works : ndarray, shape (k,)
             Work, in the scene's unit of energy.
+        largest : float
+            The largest in a part of an interval.
         """
         if self.conservative:
-            return zeros(self._precision, len(starts))
+            return zeros(self._precision, len(starts)), 0.0
         times, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
         power = self.power(times, states).reshape(len(starts), -1)
         parts = ((ends - starts) / 2)[:, None] * (power * self._quadrature[1])
-        self.passing = float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=self.passing))
-        return parts.sum(axis=1)
+        return parts.sum(axis=1), float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=0.0))
 
     def _output(self, name: str, times: Numbers, states: Numbers, multipliers: Numbers | None) -> Numbers:
         return self._evaluate(self._inputs(times, states, multipliers))[self._rows[name]]

@@ -144,13 +144,14 @@ class Recording:
         intervals, inside = self._intervals, self._inside
         self._intervals, self._inside = [], []
         starts, ends = (np.array([interval[side] for interval in intervals]) for side in (0, 1))
+        works, passing = self.mode.balance.works(starts, ends, inside)
         until = []
-        for interval, work in zip(intervals, self.mode.balance.works(starts, ends, inside), strict=True):
+        for interval, work in zip(intervals, works, strict=True):
             self.work = self.work + (interval.impulse + work)
             until.append(self.work)
             if interval.state is not None:
                 self._keep(interval.end, interval.state)
-        self.largest_work = max(largest(until, self.largest_work), self.mode.balance.passing)
+        self.largest_work = max(largest(until, self.largest_work), passing)
 
     def end(self, time: Any, state: Numbers) -> None:
         """Record the final state, projected, in place of the last step's.

@@ -44,7 +44,7 @@ def undetermined_outputs(
     rank = np.count_nonzero(sizes > NO_FORCE * sizes.max(initial=0.0))
     free = weights[:, None] * right[rank:].T  # shape (g, k): the mu
     g = len(multipliers)
-    steps = np.diag(weights) * max(np.abs(multipliers / weights).max(), 1.0)
+    steps = np.diag(weights) * (np.abs(multipliers / weights).max() or 1.0)
     points = multipliers[:, None] + np.concatenate([np.zeros((g, 1)), steps], axis=1)
     states = np.repeat(at.state[:, None], g + 1, axis=1)
     inputs = Inputs(problem)(

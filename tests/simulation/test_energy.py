@@ -31,7 +31,7 @@ def simulated(asked, until: float):
         inside = balance.times_between([piece.start], [piece.end])
         starts, ends = [*starts, piece.start], [*ends, piece.end]
         between += [(inside, piece.states(inside))] if len(inside) else []
-    work = sum(balance.works(np.array(starts), np.array(ends), between))
+    work = sum(balance.works(np.array(starts), np.array(ends), between)[0])
     return balance.energy(np.array([motion.time]), motion.state[:, None])[0] - start, work, balance
 
 

@@ -6,6 +6,7 @@ Near a singular configuration, or if numbers leave their range, it replaces the 
 as independent again as they were before.
 """
 
+from bisect import bisect_left
 from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -221,11 +222,14 @@ class FallbackEngine:
 
     def _by(self, engine: Engine, times: Numbers) -> Numbers:
         """Return True for each time that an engine integrates over."""
-        segments = [segment for segment in self.segments if segment.engine is engine.name]
-        spans = [(segment.start, segment.end) for segment in segments]
-        if engine is self._current:
-            spans.append((self._begun, np.inf))
-        return np.array([any(start < t <= end for start, end in spans) for t in times], dtype=bool)
+        current = EngineSegment(self._current.name, self._begun, np.inf)
+
+        def last_before(t: float) -> EngineSegment:
+            place = bisect_left(self.segments, t, key=lambda segment: segment.end)
+            return self.segments[place] if place < len(self.segments) else current
+
+        found = map(last_before, times)
+        return np.array([each.engine == engine.name and each.start < t for each, t in zip(found, times, strict=True)])
 
     # ---- segments ----
 

@@ -9,10 +9,19 @@ from refusing import failing
 
 from holonom.cli.motion import simulate as command
 from holonom.failures import ErrorKind
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.sandbox import Limits
 from holonom.simulation.engines import registry
+from holonom.simulation.hybrid_motion import EventOutcome
 from holonom.simulation.output import simulation_document
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
+
+SLIDING = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-2*signum(dot(x))])$
+slide : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 9/10])$
+"""
 
 
 def simulated(**asked):
@@ -43,6 +52,13 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
     )
     for name, samples in truth.coordinates.items():
         assert np.allclose(motion.coordinates[name], samples, atol=1e-4)
+
+
+def test_added_engine_is_switched(toy, write_scene):
+    """Truth: a mass of one under a friction of two comes to rest at x = 1/4, and sticks."""
+    motion = simulate(motion_problem(write_scene(SLIDING), Request(), Limits()), SimulationRequest(engine="toy")).report
+    assert [each.outcome for each in motion.switchings] == [EventOutcome.SLIDING]
+    assert (float(motion.switchings[0].t), motion.coordinates["x"]) == pytest.approx((1 / 2, 1 / 4), abs=1e-9)
 
 
 def test_added_engine_that_is_asked_for_follows_alone(toy):
