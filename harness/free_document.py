@@ -2,13 +2,19 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated
 
 from .crosscheck.report import Verdict
-from .expression.presentation import formula_text
-from .free_motion import FreeMotion, Law, MotionVerdict, TrajectoryKind, UniversalVerdict
+from .free_motion import FreeMotion, MotionVerdict, TrajectoryKind, UniversalVerdict
+from .schema import Rules
 from .structs import entry
 
-LawText = Mapping[str, str]
+if TYPE_CHECKING:
+    from sympy import Expr
+
+# SymPy expressions, which become text when the document is written.
+Formula = Annotated["Expr", Rules({"type": "string"})]
+Formulas = Mapping[str, Formula]
 
 
 @dataclass(frozen=True)
@@ -24,8 +30,8 @@ class LawCheck:
 class ConditionText:
     """An expression that must vanish if every motion is to be free."""
 
-    expression: str = entry("Expression that must vanish.")
-    place: str = entry("Function of the state whose coefficient it is.")
+    expression: Formula = entry("Expression that must vanish.")
+    place: Formula = entry("Function of the state whose coefficient it is.")
     effects: tuple[str, ...] = entry("Effects that the coefficient comes from.")
 
 
@@ -37,10 +43,10 @@ class UniversalText:
     """
 
     verdict: UniversalVerdict = entry("all: the laws are all analytic ones; some: others may exist; none: none exists.")
-    laws: tuple[LawText, ...] = entry("By control.")
+    laws: tuple[Formulas, ...] = entry("By control.")
     constants: tuple[tuple[str, ...], ...] = entry("Constants of integration of each law.")
     free: tuple[tuple[str, ...], ...] = entry("Controls that stay free functions of the time.")
-    positive: tuple[tuple[str, ...], ...] = entry("Expressions that are positive where the law holds.")
+    positive: tuple[tuple[Formula, ...], ...] = entry("Expressions that are positive where the law holds.")
     checks: tuple[LawCheck, ...] = entry("Verdict of SymPy on each law.")
     conditions: tuple[ConditionText, ...] = entry(
         "Coefficients that must vanish, each with its function of the state and the terms of the system it comes from."
@@ -54,8 +60,8 @@ class TrajectoryText:
     """The control under which one motion is free."""
 
     kind: TrajectoryKind = entry("Form of the result.")
-    law: LawText | None = entry("By control, where it is closed.")
-    series: Mapping[str, str | int] | None = entry(
+    law: Formulas | None = entry("By control, where it is closed.")
+    series: Mapping[str, Formula | int] | None = entry(
         "By control the law as a power series, and under `order` the order to which it is one; null where it is closed."
     )
     free: tuple[str, ...] = entry("Controls that stay free functions of the time.")
@@ -67,8 +73,8 @@ class TrajectoryText:
 class PrescribedText:
     """Controls under prescribed reactions."""
 
-    reactions: LawText = entry("Prescribed multipliers.")
-    controls: LawText = entry("Second time derivatives of the controls.")
+    reactions: Formulas = entry("Prescribed multipliers.")
+    controls: Formulas = entry("Second time derivatives of the controls.")
 
 
 @dataclass(frozen=True)
@@ -79,7 +85,7 @@ class FreeMotionText:
     """
 
     scene: str = entry("Name of the scene.")
-    condition: tuple[str, ...] | None = entry(
+    condition: tuple[Formula, ...] | None = entry(
         "The condition (10): each formula vanishes in free motion; null where it is not written out."
     )
     left_out: str | None = entry("Why (10) is not written out; null where it is.")
@@ -105,45 +111,27 @@ def free_motion_text(found: FreeMotion) -> FreeMotionText:
     laws, order = universal.laws, trajectory.order
     return FreeMotionText(
         found.scene,
-        None if found.condition is None else tuple(map(formula_text, found.condition)),
+        found.condition,
         found.left_out,
         found.motion,
         UniversalText(
             universal.verdict,
-            laws=tuple(law_texts(law.controls) for law in laws),
+            laws=tuple(law.controls for law in laws),
             constants=tuple(law.constants for law in laws),
             free=tuple(law.free for law in laws),
-            positive=tuple(tuple(map(formula_text, law.positive)) for law in laws),
+            positive=tuple(law.positive for law in laws),
             checks=tuple(LawCheck(law.check.verdict, law.check.digits, law.check.points) for law in laws),
-            conditions=tuple(
-                ConditionText(formula_text(each.expression), formula_text(each.place), each.effects)
-                for each in universal.conditions
-            ),
+            conditions=tuple(ConditionText(each.expression, each.place, each.effects) for each in universal.conditions),
             generic=universal.generic,
             reason=universal.reason,
         ),
         TrajectoryText(
             trajectory.kind,
-            law=None if order else law_texts(trajectory.law) or None,
-            series=order and law_texts(trajectory.law) | {"order": order},
+            law=None if order else trajectory.law or None,
+            series=order and {**trajectory.law, "order": order},
             free=trajectory.free,
             samples=trajectory.samples or None,
             reason=trajectory.reason,
         ),
-        prescribed and PrescribedText(law_texts(prescribed.reactions), law_texts(prescribed.controls)),
+        prescribed and PrescribedText(prescribed.reactions, prescribed.controls),
     )
-
-
-def law_texts(law: Law) -> dict[str, str]:
-    """Return the formulas of a law in the notation of scene files.
-
-    Parameters
-    ----------
-    law : mapping of str to SymPy expression
-        By control.
-
-    Returns
-    -------
-    dict of str to str
-    """
-    return {name: formula_text(value) for name, value in law.items()}

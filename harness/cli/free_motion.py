@@ -40,12 +40,13 @@ def free(
 
     from ..crosscheck.report import Verdict
     from ..display.free_motion import show_free_motion
+    from ..expression.presentation import formula_text
     from ..formats import Publication, published, read
     from ..free_document import free_motion_text
     from ..free_motion import FreeMotion, with_verdicts
 
     found = with_verdicts(read(Document.FREE_MOTION, text, FreeMotion))
-    present(published(Publication.FREE, free_motion_text(found)), json_file, show_free_motion, found)
+    present(published(Publication.FREE, free_motion_text(found), formula_text), json_file, show_free_motion, found)
     contradicted = any(law.check.verdict is Verdict.DISAGREES for law in found.universal.laws)
     return FAILED if contradicted else 0
 

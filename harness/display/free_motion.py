@@ -7,7 +7,6 @@ from rich.console import Console
 from rich.text import Text
 
 from ..expression.presentation import formula_text
-from ..free_document import law_texts
 from .condition import condition_lines
 from .motion import short_number
 
@@ -134,8 +133,12 @@ def _sample(sample: Iterable[float], law: "Law") -> str:
 
 
 def _series(law: "Law", order: int) -> str:
-    return ", ".join(f"{name} begins with {text}, to order {order}" for name, text in law_texts(law).items())
+    return ", ".join(f"{name} begins with {text}, to order {order}" for name, text in _texts(law))
 
 
 def _law(law: "Law") -> str:
-    return ", ".join(f"{name} = {text}" for name, text in law_texts(law).items())
+    return ", ".join(f"{name} = {text}" for name, text in _texts(law))
+
+
+def _texts(law: "Law") -> Iterable[tuple[str, str]]:
+    return ((name, formula_text(value)) for name, value in law.items())
