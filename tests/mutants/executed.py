@@ -18,6 +18,7 @@ from copies import Copy, in_copies
 from sources import ROOT, Function, functions, read
 
 APART = {"companion", "faults", "figures", "mutants", "reference", "typeset"}  # tests of what no mutant is drawn from
+APART |= {"test_lisps.py", "test_preloaded.py"}  # and of Maxima without the image, in which functions are defined anew
 QUICK = 0.05  # seconds of a test whose time pytest does not list
 SECONDS = 120.0  # of the tests that are run for a mutant, as measured
 MARKS = "marks.txt"  # what the marks write in a copy
