@@ -8,6 +8,8 @@ from fractions import Fraction
 import pytest
 
 import holonom
+from holonom.crosscheck.irregular_point import IrregularPoint
+from holonom.crosscheck.linearized import verify
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.results import read_result, verify_result
 from holonom.failures import ErrorKind, HolonomError
@@ -282,3 +284,11 @@ def test_check_takes_a_result(holonom_here, write_scene, tmp_path):
     answer = holonom_here("check", scene, "--result", file, "--json", "-")
     last = json.loads(answer.stdout)["equations"][-1]
     assert (answer.returncode, last["id"], last["verdict"]) == (1, "result", "disagrees")
+
+
+def test_conditions_without_real_values_are_undecided():
+    def conditions():
+        yield "a condition that holds", 0.0, 1.0
+        raise IrregularPoint
+
+    assert verify(conditions()).verdict is Verdict.UNDECIDED
