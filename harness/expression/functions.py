@@ -14,7 +14,7 @@ class Constant:
     scene: str  # in scene files, as Maxima calls it
     latex: str
     sympy: str
-    mpmath: str = ""  # empty where it is no real number
+    mpmath: str = ""  # empty where it is not a real number
 
 
 # By the name in MathJSON.
