@@ -438,3 +438,10 @@ def test_narrow_pulse_gets_a_verdict(write_scene):
     found = free_motion(file, None, {}, Limits())
     assert found.motion.verdict != "free"
     assert found.universal.verdict == "all"
+
+
+@pytest.mark.long
+def test_tree_of_many_bodies_takes_sparse_time():
+    tree = EXAMPLES.parent / "tests" / "benchmarks" / "tree.mac"
+    found = free_motion(tree, None, {"N": "32"}, Limits(seconds=120))  # dense matrices took more than 500 s
+    assert found.motion.verdict == "undecided"
