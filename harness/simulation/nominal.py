@@ -80,6 +80,20 @@ class Nominal(NamedTuple):
         share = min(1.0, float(min(coordinates, velocities) / largest))
         return COARSE ** round(log(share) / log(COARSE))
 
+    def in_unit(self, unit: float) -> "Nominal":
+        """Return the sizes in another unit of time.
+
+        Parameters
+        ----------
+        unit : float
+            In the scene's unit.
+
+        Returns
+        -------
+        Nominal
+        """
+        return Nominal(self.time / unit, np.concatenate([self.coordinates, self.velocities * unit]))
+
     def energy(self, mass: Matrix) -> float:
         """Return the energy of the nominal velocities: the largest A_ii v_i^2.
 

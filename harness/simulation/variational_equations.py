@@ -22,7 +22,7 @@ from ..program.rewriting import computing
 from .constraints.directions import or_one
 from .constraints.factorization import factored_constraints
 from .constraints.stabilization import Equations
-from .engines.scaled_time import in_unit
+from .engines.scaled_time import in_unit, units_near
 from .evaluation import Numbers
 from .initial_tangents import ConstraintVariation
 from .inputs import Inputs, heyoka_inputs
@@ -30,7 +30,6 @@ from .matrices import MotionMatrices, start_of
 from .nominal import Nominal
 from .variation import Variation, size_of
 
-NEAR = 10  # powers of two between such units
 PROBES = np.array([0.0, 0.3127, -0.7411])  # in these units, at the initial time: where a parameter may have an effect
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
@@ -63,7 +62,7 @@ class VariationalEquations:
             )
         self.problem, self.directions, self.kind = problem, tuple(directions), ("variational", *directions)
         self._matrices, self.inputs = matrices, Inputs(problem)
-        self.units = Nominal(*map(_units_near, matrices.nominal))
+        self.units = Nominal(*map(units_near, matrices.nominal))
         self.constraints = ConstraintVariation(problem, self.directions)
         parameters = [name for name in self.directions if name in problem.parameters]
         self._seeds = {name: derivative_name(name, name) for name in parameters}
@@ -222,8 +221,3 @@ def largest(*states: Numbers) -> float:
         Not below one.
     """
     return max(1.0, *(float(np.max(np.abs(state))) for state in states))
-
-
-def _units_near(sizes: float | Numbers) -> float | Numbers:
-    """Return powers of two near sizes, the same ones for similar sizes."""
-    return 2.0 ** (NEAR * np.round(np.log2(sizes) / NEAR))

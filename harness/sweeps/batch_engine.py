@@ -24,6 +24,7 @@ from ..program.motion_program import Expression, Name
 from ..program.rewriting import computing
 from ..simulation.constraints.program_projection import distance, nearest_state
 from ..simulation.engines.program_engine import SHRUNK
+from ..simulation.engines.scaled_time import in_unit, sizes_of_state, unit_of
 from ..simulation.evaluation import batch_evaluation
 from ..simulation.inputs import Inputs
 from ..simulation.nominal import nominal_of
@@ -118,6 +119,7 @@ class BatchEngine:
     ) -> None:
         heyoka = import_heyoka()
         self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
+        self._unit = unit_of(problem, self._nominal.time)  # of the integrator's time
         elements = self._elements = elements or ELEMENTS
         self._along, self._look, self._size = len(along), look, len(problem.state)
         outcome = heyoka.taylor_outcome
@@ -132,15 +134,17 @@ class BatchEngine:
         error = energy - heyoka.par[len(parameters)] - work / SMALL
         equations += [(work, SMALL * power), (squared_error, SMALL * error * error)]
         equations += [(heyoka.expression(f"along[{k}]"), SMALL * rate) for k, rate in enumerate(rates)]
+        velocities = [variable for variable, _ in equations[self._size // 2 : self._size]]
         self._integrator = heyoka.taylor_adaptive_batch(
-            equations,
+            in_unit(equations, self._unit, velocities),
             np.zeros((len(equations), elements)),
-            tol=tol * self._nominal.absolute(),
+            tol=tol * self._nominal.in_unit(self._unit).absolute(),
             compact_mode=problem.motion.operations * elements >= COMPACT_FROM,
         )
         self._state, self._time = self._integrator.state, self._integrator.time
         self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
+        self._sizes = sizes_of_state(self._size, self._unit)[:, None]  # of the state in the integrator
         self._recorder = _StepRecorder(self._integrator, self._behind) if along else None
         self._inputs = Inputs(problem)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
@@ -167,22 +171,23 @@ class BatchEngine:
         """
         k, elements = states.shape[1], self._elements
         found, arrived = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool)
-        shortest, taken, looking = np.empty(k), np.empty(k, dtype=int), _Looking(self._look)
-        starts = np.concatenate([states, np.zeros((len(ACCURACY_INTEGRALS) + self._along, k))])
+        shortest, taken, looking = np.empty(k), np.empty(k, dtype=int), _Looking(self._look, self._unit)
+        starts = np.concatenate([self._sizes * states, np.zeros((len(ACCURACY_INTEGRALS) + self._along, k))])
+        ends = [stop / self._unit for stop in stops]
         begun = self._energies(self._start, states, values)
         pars = np.concatenate([values, begun[None]])
         for first in range(0, k, elements):
             here = slice(first, min(first + elements, k))
-            batch = self._batch(starts[:, here], pars[:, here], _of(stops, here))
+            batch = self._batch(starts[:, here], pars[:, here], _of(ends, here))
             found[:, :, here], arrived[here], shortest[here], taken[here], recorded = batch
             if recorded is not None:
                 looking.add(here, recorded)
         numbers = looking.numbers(k)
         arrived &= ~np.isinf(numbers).any(axis=0)
-        reached = self._on_constraints(found[:, : self._size], values, stops, arrived)
+        reached = self._on_constraints(found[:, : self._size] / self._sizes, values, stops, arrived)
         works, squares = np.moveaxis(found[:, self._size :], 1, 0) / SMALL
         gained = np.array([self._energies(*at, values) for at in zip(stops, reached, strict=True)]) - begun
-        error = np.maximum(np.max(np.abs(gained - works), axis=0), np.sqrt(squares[-1] / shortest))
+        error = np.maximum(np.max(np.abs(gained - works), axis=0), np.sqrt(squares[-1] / (self._unit * shortest)))
         exchanged = np.max(np.maximum(np.abs(gained), np.abs(works)), axis=0)
         return BatchResult(reached, arrived, numbers, taken, error, exchanged)
 
@@ -227,7 +232,7 @@ class BatchEngine:
         integrator, recorder, options = self._integrator, self._recorder, {}
         if recorder is not None:
             options = {"callback": recorder.begin(), "write_tc": True}
-        integrator.set_time(self._start)
+        integrator.set_time(self._start / self._unit)
         self._state[...], self._pars[...] = starts, pars
         integrator.pars[...] = pars
         reached, well = np.empty((len(stops), self._behind, self._elements)), np.ones(self._elements, dtype=bool)
@@ -255,8 +260,9 @@ class BatchEngine:
     def _keep(self, elements: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the elements whose block has ended before their motion."""
         if self._corrections is not None:
-            projected, strayed = self._projected(self._time, self._moving, self._pars[:-1])
-            self._moving[:, elements] = projected[:, elements]
+            reached = self._unit * self._time, self._moving / self._sizes
+            projected, strayed = self._projected(*reached, self._pars[:-1])
+            self._moving[:, elements] = (self._sizes * projected)[:, elements]
             well &= ~(elements & strayed)
 
     def _nothing(self, stops: int, count: int) -> _Batch:
@@ -277,10 +283,12 @@ class _Looking:
     ----------
     look : callable
         As for `BatchEngine`.
+    unit : float
+        Unit of the recorded times.
     """
 
-    def __init__(self, look: Look) -> None:
-        self._look = look
+    def __init__(self, look: Look, unit: float) -> None:
+        self._look, self._unit = look, unit
         self._waiting: dict[tuple[int, ...], list[tuple[slice, _Recorded]]] = {}
         self._made: list[tuple[slice, Floats]] = []
 
@@ -305,18 +313,18 @@ class _Looking:
         places, recorded = zip(*alike, strict=True)
         joined = _Recorded(*(np.concatenate(each, axis=-1) for each in zip(*recorded, strict=True)))
         ends = np.cumsum([len(each.length[0]) for each in recorded])
-        self._made += zip(places, np.split(self._look(_steps(joined)), ends[:-1], axis=1), strict=True)
+        self._made += zip(places, np.split(self._look(_steps(joined, self._unit)), ends[:-1], axis=1), strict=True)
         alike.clear()
 
 
-def _steps(recorded: _Recorded) -> list[Steps]:
-    """Return each quantity along the motions."""
+def _steps(recorded: _Recorded, unit: float) -> list[Steps]:
+    """Return each quantity along the motions, recorded with times in a unit."""
     series, length, time = recorded
-    powers, rescaled = series.shape[2], rates_of(series.shape[2], 1 / SMALL)
-    made = []
+    powers, rescaled = series.shape[2], rates_of(series.shape[2], 1 / (SMALL * unit))
+    made, middle = [], unit * (time - length)
     for each in np.moveaxis(series, 0, 2):
         coefficients = rescaled(np.concatenate([each, length[None]]).reshape(powers + 1, -1))
-        made.append(Steps(coefficients.reshape(each.shape), time - length, length, 0.0))
+        made.append(Steps(coefficients.reshape(each.shape), middle, unit * length, 0.0))
     return made
 
 

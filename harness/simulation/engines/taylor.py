@@ -83,11 +83,12 @@ class TaylorEngine(ProgramEngine):
         self._tolerance = (
             {} if tol is None else {"tol": self.precision.number(repr(checked_tolerance(tol, self.precision)))}
         )
-        self._finer = self._matrices.nominal.absolute()
+        nominal = self._matrices.nominal
+        self._unit = unit_of(problem, nominal.time) if numbers.name == "double" else numbers.number("1")
+        self._finer = nominal.in_unit(float(self._unit)).absolute()
         if self._finer < 1:
             whole = self._tolerance.get("tol", self.precision.rounding)
             self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
-        self._unit = unit_of(self._matrices.nominal.time, self.precision)
         self._chosen, self._end = compact is not None, end
         self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
@@ -208,10 +209,14 @@ class TaylorEngine(ProgramEngine):
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True, **self._bound)
         steps = [] if between is None else pairwise(between.times)
-        unit = self._unit
-        return tuple(taken), [
-            Step(start * unit, end * unit, lambda times: between(times / unit).T.copy()) for start, end in steps
-        ]
+        unit, scaled = self._unit, self._unit != 1
+        sizes = self._integrator.sizes if scaled else None
+
+        def states(times: Numbers) -> Numbers:
+            found = between(times / unit)
+            return (found / sizes if scaled else found.copy()).T
+
+        return tuple(taken), [Step(start * unit, end * unit, states) for start, end in steps]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Return each step with its Taylor polynomials."""
@@ -314,7 +319,8 @@ class TaylorEngine(ProgramEngine):
         else:
             equations = stabilized_equations(*asked, self._stabilization, self._decay)
         if self._unit != 1:
-            equations = in_unit(equations, self._unit)
+            velocities = [variable for variable, _ in equations[len(state) // 2 :]]
+            equations = in_unit(equations, self._unit, velocities)
         return import_heyoka().taylor_adaptive(
             equations, state, **self._tolerance, **code.options, **self.precision.options
         )
