@@ -31,6 +31,7 @@ from .nominal import Nominal
 from .variation import Variation, size_of
 
 PROBES = np.array([0.0, 0.3127, -0.7411])  # in these units, at the initial time: where a parameter may have an effect
+NO_MOVE = 1e-6  # of the state, by a direction of nominal size: smaller derivatives may be rounding errors of it
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
 
@@ -176,7 +177,8 @@ class VariationalEquations:
         if not self.problem.multipliers:
             return 0.0
         jacobian, sizes = np.abs(self._matrices(t, state).jacobian), self.units.state[:, None]
-        moving = np.split(sizes * np.max(np.abs(moves) / sizes, axis=0), 2)  # if all values move as far as one does
+        farthest = np.maximum(NO_MOVE, np.max(np.abs(moves) / sizes, axis=0))
+        moving = np.split(sizes * farthest, 2)  # if all values move as far as one does
         missed = np.abs(self.constraints(t, state, moves))
         return float(np.max(missed / or_one(jacobian @ np.array(moving) + missed), initial=0.0))
 

@@ -326,11 +326,20 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 ;; A coordinate that gets so small is on its way to zero: the points are drawn nowhere near it.
 (defun landed (coordinate) (if (< (abs coordinate) *small-coordinate*) 0 coordinate))
 
-(defun $moved_point (point shifts)
-  "The point moved by  name = number, ..."
-  (let ((moved (copied-point point)))
-    (dolist (shift (cdr shifts) moved)
-      (incf (gethash (second shift) (sample-point-symbols moved)) (rational-of (third shift))))))
+(defvar *least-share-moved* (expt 10 -12) "Of the largest of several values: the others are rounding errors of zeros.")
+
+(defun $moved_point (point shares)
+  "The point, each  name = share  moved by this share of its value; of the least of these values where it is zero."
+  (let* ((moved (copied-point point))
+         (values (mapcar #'(lambda (share) (abs (coordinate (second share) point))) (cdr shares)))
+         (zero (* *least-share-moved* (largest-of (cons 0 values))))
+         (sizes (remove-if #'(lambda (value) (<= value zero)) values))
+         (least (if sizes (reduce #'min sizes) 1)))
+    (mapc #'(lambda (share value)
+              (incf (gethash (second share) (sample-point-symbols moved))
+                    (* (rational-of (third share)) (if (> value zero) value least))))
+          (cdr shares) values)
+    moved))
 
 (defun copied-point (point) (converted-point point #'identity))
 

@@ -240,3 +240,13 @@ system : holonomic_system(parameters = [m, g, mu], assembly(bob, rail, gravity =
 scene : holonomic_scene(system, parameter_values = [m = 2, g = 10, mu = 1/4], initial_state = [x = 0, dot(x) = 5])$
 """)
     assert scene.simulate(until=1, samples=2)["x"][-1] == pytest.approx(5 - 2.5 / 2, rel=1e-12)
+
+
+def test_a_scene_may_leave_out_all_friction():
+    """Truth: it slides as on ice."""
+    text = INCLINE.replace("VELOCITY", "1").replace(
+        "scene : holonomic_scene(system,", "ice : holonomic_scene(system, effects = [gravity],"
+    )
+    motion = of_text(text).simulate(samples=2)
+    assert motion["x"][-1] == pytest.approx(2 + 2 * 9.81 * np.sin(0.25), abs=1e-12)
+    assert motion["lambda1"] == pytest.approx(2 * 9.81 * np.cos(0.25))
