@@ -9,6 +9,9 @@ number that its floating-point value is. From a Groebner basis over the rational
 - The number of distinct real solutions is then the signature of Hermite's form, H_ij = trace of the multiplication by
   b_i b_j, with b the monomials that no leading monomial divides (Cox, Little & O'Shea, Using Algebraic Geometry,
   section 2.5, theorem 5.2).
+- Multipliers of independent constraints suffice if their gradients have full rank wherever f = 0, and the others depend
+  on them there: the maximal minors have no common zero if 1 is in their ideal with f (Cox, Little & O'Shea, Ideals,
+  Varieties, and Algorithms, section 4.1, theorem 1), and those with one more row vanish if they are in that of f.
 - The values of an unknown are roots of the characteristic polynomial of the multiplication by it (section 2.4, theorem
   4.5 of the same book). The numeric solution chooses one of them.
 """
