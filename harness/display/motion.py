@@ -184,7 +184,7 @@ def _quality(report: "Report") -> Iterator[str]:
 
 def _choice(choice: "Choice") -> str:
     """Return the reason for the choice of an engine."""
-    seconds = f"{choice.taylor:.2g} s by taylor, {choice.runge_kutta:.2g} s by runge-kutta with the C compiler"
+    seconds = ", ".join(f"{expected:.2g} s by {engine}" for engine, expected in choice.seconds.items())
     work = f"{choice.steps} steps of {choice.operations} operations"
     if choice.refused:
         return f"{choice.engine} is slower for {work}: {seconds}; but {choice.refused}"

@@ -68,7 +68,7 @@ class Report:
     )
     ending: Ending | None = entry("Whether an event ended the motion; null where the scene names none.", None)
     choice: Choice | None = entry(
-        "Why the engine that began was taken: the steps that the Taylor engine has ahead, the operations of the "
+        "Why the engine that began was taken: the steps that the default engine has ahead, the operations of the "
         "motion program, and the seconds that the motion is expected to take with each engine. Null where one was "
         "asked for, or is the only one.",
         None,

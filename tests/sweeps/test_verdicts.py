@@ -112,7 +112,7 @@ def test_rows_that_are_integrated_alone_left_their_libraries_open(rows_of, tmp_p
     """Truth: as many open libraries and functions after six rows, one of them broken off, as after one."""
     loaded = []
     monkeypatch.setattr(runge_kutta, "load_c", lambda *asked: loaded.append(asked) or load_c(*asked))
-    monkeypatch.setattr(fallback, "quicker_engine", lambda *asked: Choice(EngineName.RUNGE_KUTTA, 0, 0, 1.0, 0.0))
+    monkeypatch.setattr(fallback, "quicker_engine", lambda *asked: Choice(EngineName.RUNGE_KUTTA, 0, 0, {}))
     monkeypatch.setattr(fallback, "TRIAL", 1)
     file = tmp_path / "scene.mac"
     file.write_text(scene("x", "dot(x)^2/2", "exp(-x^2)/k", "x = 0, dot(x) = 1", "1"))

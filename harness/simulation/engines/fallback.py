@@ -1,7 +1,7 @@
 """Integration of a motion by several engines, with the robust engine as fallback.
 
-The Taylor engine is the first choice, or the Runge-Kutta engine if it is quicker. Both use the motion program. If
-constraints are redundant, no order of pivots solves the equations, and the robust engine integrates the whole motion.
+The default engine is the first choice, or another one if it is quicker. They use the motion program. If constraints
+are redundant, no order of pivots solves the equations, and the robust engine integrates the whole motion.
 Near a singular configuration, or if numbers leave their range, it replaces the other engine until the constraints are
 as independent again as they were before.
 """
@@ -16,6 +16,7 @@ import numpy as np
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
+from ..constraints.singularity import probed
 from ..evaluation import Numbers, as_floats
 from ..hard_cases import Difficulty
 from ..request import EngineName
@@ -66,6 +67,7 @@ class FallbackEngine:
         self._second: Engine | None = None
         self._current = self._first = self._first_engine(dense)
         self._begun, self.segments = float(self.time), []
+        self._why_first = self._reason_for_first()
 
     @property
     def time(self) -> Any:
@@ -109,6 +111,7 @@ class FallbackEngine:
         """
         self._first.restart(time_point, state)
         self._current, self._begun = self._first, float(time_point)
+        self._why_first = self._reason_for_first()
 
     def advance(self, until: Any) -> None:
         """Integrate to a time, each engine at its fastest.
@@ -265,12 +268,14 @@ class FallbackEngine:
             if float(self.time) > self._begun:
                 self._add_segment(EngineSegment(self._current.name, self._begun, float(self.time), *why))
 
-    @property
-    def _why_first(self) -> tuple[Difficulty | None, str]:
-        """The reason for an automatic choice of the robust engine."""
-        if self._task.problem.obstruction is None:
+    def _reason_for_first(self) -> tuple[Difficulty | None, str]:
+        """Return the reason for which no engine with fixed pivots can begin here."""
+        problem = self._task.problem
+        if problem.obstruction is None:
             return None, ""
-        return self._first.case, self._task.problem.obstruction
+        rank, _ = probed(self._task.matrices, float(self.time), as_floats(self.state))
+        redundant = rank < len(problem.multipliers)
+        return Difficulty.REDUNDANT if redundant else Difficulty.SINGULAR_CONFIGURATION, problem.obstruction
 
     def _add_segment(self, segment: EngineSegment) -> None:
         """Add a segment, or extend the last one if engine and reason are equal."""

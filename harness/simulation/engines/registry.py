@@ -1,7 +1,7 @@
 """Registry of the engines by name. A new engine needs its file and a line here.
 
-The default engine, or the quickest of the compared ones, begins a motion. The robust engine continues at an
-obstruction. It is imported only then, because SciPy takes long to import.
+The default engine, or the quickest of the compared ones, begins a motion: the default one estimates how many steps are
+ahead. The robust engine continues at an obstruction. It is imported only then, because SciPy takes long to import.
 """
 
 from importlib import import_module

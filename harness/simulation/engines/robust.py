@@ -24,7 +24,6 @@ from ..constraints.directions import EPSILON, dependent_constraints, rank_of, we
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
-from ..hard_cases import Difficulty
 from ..matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
 from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
@@ -126,11 +125,6 @@ class RobustEngine:
             )
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
         return cls(task.problem, tol, task.matrices, task.request.max_step)
-
-    @property
-    def case(self) -> Difficulty:
-        """The reason for which no other engine can begin the motion."""
-        return Difficulty.REDUNDANT if self.rank < len(self._multipliers) else Difficulty.SINGULAR_CONFIGURATION
 
     def restart(self, time_point: float, state: Vector) -> None:
         """Continue from another time and state.

@@ -1,13 +1,16 @@
 """An engine is added by its file and a line in the registry."""
 
 from fractions import Fraction
+from io import StringIO
 
 import numpy as np
 import pytest
 from problems import problem
 from refusing import failing
+from rich.console import Console
 
 from holonom.cli.motion import simulate as command
+from holonom.display.motion import show_simulation
 from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
@@ -29,6 +32,12 @@ def simulated(**asked):
     return simulate(problem("pendulum.mac", "swing_scene"), wanted)
 
 
+def shown(motion):
+    file = StringIO()
+    show_simulation(Console(file=file, width=1000), motion)
+    return file.getvalue()
+
+
 @pytest.fixture
 def toy(monkeypatch):
     monkeypatch.setitem(registry.ENGINES, "toy", "toy_engine:ToyEngine")
@@ -44,6 +53,8 @@ def test_added_engine_is_chosen_relieved_recorded_and_reported(toy):
     motion, truth = simulated(), simulated(engine=EngineName.TAYLOR)
     report, document = motion.report, simulation_document(motion)
     assert report.choice.engine == document["choice"]["engine"] == "toy"
+    assert document["choice"]["seconds"]["toy"] == 0.0 < report.choice.seconds["taylor"]
+    assert "0 s by toy" in shown(motion)
     assert [segment.engine for segment in report.segments] == ["toy", "robust", "toy"]
     assert [segment.start for segment in report.segments] == pytest.approx([0, 1, 1.5], abs=0.1)
     assert document["segments"][1]["reason"] == "stopped"
