@@ -29,6 +29,7 @@ ENDS = np.append(NODES, 1.0)  # after the last sample there is none
 PLACES = np.linspace(0.0, 1.0, FINE + 1)
 TO_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * NODES[1:-1] - 1, DEGREE))
 BETWEEN = chebyshev.chebvander(2 * PLACES - 1, DEGREE)
+CONSTANT = np.eye(DEGREE + 1)[0]  # coefficients of the polynomial one
 CORRECTIONS = 4  # of a minimum, by Newton's method
 PARTS, SHORTEST = 128, 1 / 1024  # of the time span: parts that are looked at, at least; parts that are not halved
 SECTIONS = 32  # of an interval with a zero, of which the one that has it is taken
@@ -49,10 +50,13 @@ class Crossing(NamedTuple):
 class SignedFunctions(ABC):
     """Functions along a motion, each with its sign before the first crossing."""
 
+    touching = 0.0  # of the largest that a function is nearby: a minimum below that counts as a zero
+
     def __init__(self, precision: Precision, span: float) -> None:
         self._precision, self._span = precision, span
         self._rows: list[tuple[str, int, int]] = []  # name, value after the crossing, sign before it
         self._sizes: dict[str, float] = {}  # the largest that each function has been
+        self._unsure = 10.0 ** (SURE - precision.sure_digits)  # of these: rounding
         self._sections = np.array([precision.ratio(Fraction(place, SECTIONS)) for place in range(1, SECTIONS)])
 
     @abstractmethod
@@ -144,12 +148,13 @@ class SignedFunctions(ABC):
     def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers, first: int) -> Crossing | None:
         name, to, _ = self._rows[row]
         values[:first] = np.maximum(values[:first], 0.0)
-        negative = np.flatnonzero(values < 0)
-        last = negative[0] if negative.size else len(values)
+        touched = self.touching * np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
+        low = np.flatnonzero(values < min(touched, self._unsure * self._sizes[name]))
+        last = _least_after(values, low[0]) if low.size else len(values)
         if last == 0:
             return Crossing(step.start, name, to)
-        before, after = (places[last - 1], places[last]) if negative.size else (None, None)
-        dip = self._dip(step, row, values, *ENDS[[first, last]])
+        before, after = (places[last - 1], places[last]) if low.size else (None, None)
+        dip = self._dip(step, row, values, touched, *ENDS[[first, last]])
         if dip is not None:
             before, after = dip
         if after is None:
@@ -160,10 +165,12 @@ class SignedFunctions(ABC):
 
         return Crossing(self._last_inside(inside, before, after), name, to)
 
-    def _dip(self, step: Step, row: int, values: Numbers, begin: float, end: float) -> tuple[Any, Any] | None:
+    def _dip(
+        self, step: Step, row: int, values: Numbers, touched: float, begin: float, end: float
+    ) -> tuple[Any, Any] | None:
         """Return times between two samples of which the second has a negative value.
 
-        The function becomes positive again before the later sample.
+        Or one that touches zero. The function becomes positive again before the later sample.
         """
         inner = values[1:-1]
         if not np.isfinite(inner).all() or np.min(inner) > np.ptp(inner):
@@ -171,14 +178,15 @@ class SignedFunctions(ABC):
         coefficients = TO_COEFFICIENTS @ inner
         between = BETWEEN @ coefficients
         places = np.flatnonzero((between < 0) & (begin < PLACES) & (end > PLACES))
-        around = (
-            PLACES[places[0] + np.array([-1, 0])] if places.size else _narrow_dip(coefficients, between, begin, end)
-        )
+        if places.size:
+            around = PLACES[places[0] + np.array([-1, 0])]
+        else:
+            around = _narrow_dip(coefficients - touched * CONSTANT, between, begin, end)
         if around is None:
             return None
         times, found = self._samples(step, around)
-        rounding = 10.0 ** (SURE - self._precision.sure_digits) * self._sizes[self._rows[row][0]]
-        return tuple(times) if found[row, 0] >= 0 and found[row, 1] < -rounding else None
+        least = touched - self._unsure * self._sizes[self._rows[row][0]]
+        return tuple(times) if found[row, 0] >= 0 and found[row, 1] < least else None
 
     def _samples(self, step: Step, places: Numbers) -> tuple[Numbers, Numbers]:
         """Return the times of a step, and the functions there, shape (functions, k)."""
@@ -216,45 +224,31 @@ def _is_resolved(values: Numbers) -> bool:
     return bool((sizes[:, -LAST:].max(axis=1) <= RESOLVED * sizes.max(axis=1)).all())
 
 
+def _least_after(values: Numbers, place: int) -> int:
+    """Return the least sample that touches zero from a place on.
+
+    It is the place itself if its value is negative.
+    """
+    while place + 1 < len(values) and 0 <= values[place + 1] < values[place]:
+        place += 1
+    return place
+
+
 def _narrow_dip(coefficients: Vector, between: Vector, begin: float, end: float) -> Vector | None:
     """Return a place and a later one at which a polynomial is negative.
 
-    It is the first minimum below zero. No sample of the polynomial is negative.
-    """
-    for low, place in minima(coefficients, between, above_zero=True):
-        if chebyshev.chebval(place, coefficients) < 0 and begin < (1 + place) / 2 < end:
-            return (1 + np.array([low, place])) / 2
-    return None
-
-
-def minima(coefficients: Vector, sizes: Vector, above_zero: bool) -> Iterator[tuple[float, float]]:
-    """Yield the minima of a polynomial's size in [-1, 1].
-
-    Newton's method for the slope refines a minimum.
-
-    Parameters
-    ----------
-    coefficients : ndarray, shape (degree + 1,)
-        Coefficients of Chebyshev polynomials.
-    sizes : ndarray, shape (FINE + 1,)
-        Sizes of the polynomial at `PLACES`.
-    above_zero : bool
-        True to refine a minimum only while the polynomial bends upwards.
-
-    Yields
-    ------
-    low : float
-        The place before the minimum.
-    place : float
-        The minimum.
+    It is the first minimum below zero. No sample of the polynomial, shape (FINE + 1,), is negative. Newton's method for
+    the slope refines each minimum.
     """
     slope = chebyshev.chebder(coefficients)
     bend = chebyshev.chebder(slope)
-    for least in 1 + np.flatnonzero((sizes[1:-1] <= sizes[:-2]) & (sizes[1:-1] <= sizes[2:])):
+    for least in 1 + np.flatnonzero((between[1:-1] <= between[:-2]) & (between[1:-1] <= between[2:])):
         low, place, high = 2 * PLACES[least - 1 : least + 2] - 1
         for _ in range(CORRECTIONS):
             curvature = chebyshev.chebval(place, bend)
-            if curvature == 0 or (above_zero and curvature < 0):
+            if curvature <= 0:
                 break
             place = min(max(place - chebyshev.chebval(place, slope) / curvature, low), high)
-        yield low, place
+        if chebyshev.chebval(place, coefficients) < 0 and begin < (1 + place) / 2 < end:
+            return (1 + np.array([low, place])) / 2
+    return None

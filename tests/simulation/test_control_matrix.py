@@ -24,6 +24,12 @@ class OneControl(ControlMatrix):
         ((lambda t: 1 - t, lambda t: 4 + t), None),
         ((lambda t: 1 - t, lambda t: 2 - 2 * t), 1.0),
         ((lambda t: (1 - t) * (2 - t), lambda t: (4 - t) * (2 - t)), 2.0),
+        ((lambda t: (1 - t) ** 2, lambda t: (1 - t) ** 2 * t), 1.0),
+        ((lambda t: (1.5 - t) ** 2, lambda t: -((1.5 - t) ** 2)), 1.5),
+        ((lambda t: (1 - t) ** 2 * (2 - t), lambda t: (2 - t) * t), 2.0),
+        ((lambda t: (1 - t) ** 2 + 1e-6, lambda t: (1 - t) ** 2), None),
+        ((lambda t: (1 - t) * t, lambda t: 2 * (1 - t) * t), 0.0),
+        ((lambda t: 1 / (1 - t), lambda t: 1 / (4 + t)), None),
     ],
 )
 def test_rank_is_lost_when_all_rows_vanish_and_not_when_one_does(rows, lost):
