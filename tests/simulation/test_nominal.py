@@ -9,7 +9,7 @@ import holonom
 from holonom.failures import HolonomError
 from holonom.program.precision import read_precision
 from holonom.simulation import nominal
-from holonom.simulation.nominal import Nominal, first_order_changes
+from holonom.simulation.nominal import Nominal, first_order_changes, share_of
 
 
 @pytest.mark.parametrize("at_once", [1, 10, 4096])
@@ -42,6 +42,16 @@ def test_changes_that_are_not_finite_do_not_count_beyond_double_precision():
 
     found = first_order_changes(functions, times, states, Nominal(1.0, np.ones(2)))
     assert found[:, 0] == pytest.approx([3.0, 3.0])
+
+
+@pytest.mark.parametrize("unit", [1e-10, 1.0, 1e9])
+def test_a_change_is_relative_to_nominal_sizes_or_to_the_largest_number_beyond_them(unit):
+    """No number counts as one: a state of 1e-10 that moves by itself has moved by all of its size."""
+    sizes = unit * np.array([1.0, 1e-3])
+    change = unit * np.array([[1e-6, 0.0], [1e-6, 1e-6]])
+    numbers = unit * np.array([[0.5, 0.0], [1e-4, 4e-3]])
+    assert share_of(change, numbers, sizes) == pytest.approx([1e-3, 1e-3 / 4])
+    assert Nominal(1.0, sizes).share(change[:, 0], numbers[:, 0]) == pytest.approx(1e-3)
 
 
 def test_a_singular_start_is_refused_without_warnings_of_numpy():

@@ -84,3 +84,17 @@ def test_projection_is_quadratic_in_what_is_amiss(precision):
     for _ in range(3):
         keeper.project(start, state)
     assert abs(float(state[0] ** 2 + state[1] ** 2 - numbers.number("1"))) < 10.0 ** (1 - numbers.sure_digits)
+
+
+SMALL = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = x^2/2)$
+small : holonomic_scene(system, initial_state = [x = 1/10^12, dot(x) = 0], time_span = [0, 10])$
+"""
+
+
+@pytest.mark.parametrize("tol", [1e-6, 1e-12])
+def test_a_small_motion_is_as_exact_as_a_large_one(tol, write_scene):
+    """Truth: cos(t). heyoka's tolerance is absolute where all numbers are below one."""
+    motion = motion_problem(write_scene(SMALL), Request(), Limits())
+    report = simulate(motion, SimulationRequest(engine="taylor", tol=tol, samples=0)).report
+    assert report.coordinates["x"] * 1e12 == pytest.approx(np.cos(10), abs=100 * tol)
