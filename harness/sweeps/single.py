@@ -32,6 +32,7 @@ PARTS, MOST_PARTS = 4, 4096  # of a step, each with a polynomial of its own, and
 NODES = -np.cos(np.pi * (np.arange(9) + 0.5) / 9)  # of Chebyshev
 DOUBLE = read_precision("double")
 TO_POWERS = np.linalg.inv(polynomial.polyvander(NODES, len(NODES) - 1))
+ROUNDED = np.finfo(float).eps * np.abs(TO_POWERS[-LAST:]).sum(axis=1).max()  # of a time, in the last coefficients
 
 Floats = NDArray[np.float64]
 
@@ -168,7 +169,7 @@ class _Look:
     def _polynomials(self, step: Step) -> list[tuple]:
         """Return the quantities on parts of a step so short that coefficients fall off.
 
-        Middle, half length, coefficients.
+        Parts are not shorter than the rounding of the time allows. Middle, half length, coefficients.
         """
         half = float(step.end - step.start) / 2 / PARTS
         middles, count = float(step.start) + half * np.arange(1, 2 * PARTS, 2), 0
@@ -176,7 +177,10 @@ class _Look:
         while len(middles):
             coefficients = self._in_parts(step, middles, half)
             sizes = np.maximum(sizes, np.abs(coefficients[..., 0]).max(axis=1)[:, None])  # of values
-            coarse = (np.abs(coefficients[..., -LAST:]).max(axis=2) > RESOLVED * sizes).any(axis=0)
+            last, changes = (
+                np.abs(coefficients[..., some]).max(axis=2) for some in (slice(-LAST, None), slice(1, None))
+            )
+            coarse = (last > np.maximum(RESOLVED * sizes, ROUNDED * np.abs(middles) / half * changes)).any(axis=0)
             count += len(middles)
             coarse &= count + PARTS * coarse.sum() <= MOST_PARTS
             fine = np.moveaxis(coefficients, 1, 0)[~coarse]

@@ -9,7 +9,7 @@ from holonom.simulation.residuals import scaled_residual
 @pytest.mark.parametrize("length", [1e-10, 1.0, 1e9])
 @pytest.mark.parametrize(("at", "largest"), [(1.0, 1.0), (3.0, 2.4)])
 def test_a_residual_is_the_distance_from_the_circle_in_units_of_its_size(length, at, largest):
-    """Truth: a point at 1 + 1e-7 of the radius, which is 1e-7 of the radius away; beyond the size, of the coordinate."""
+    """Truth: a point at 1 + 1e-7 of the radius, which is as far away; beyond the size, of the coordinate."""
     radius = at * length
     q = radius * (1 + 1e-7) * np.array([0.6, -0.8])
     residual, jacobian = np.array([q @ q - radius**2]), 2 * q[None]

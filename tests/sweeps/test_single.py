@@ -1,0 +1,29 @@
+"""Looks at the steps of single motions."""
+
+import numpy as np
+import pytest
+
+from holonom.simulation.engines.engine import Step
+from holonom.sweeps.single import _Look
+
+
+def taken(quantity, start, end):
+    """Middles, half lengths and coefficients of the parts of one step."""
+    look = _Look(lambda mode, times, states: quantity(times)[None], 1, 0, [end], end - start)
+    look.take(Step(start, end, lambda times: np.zeros((2, len(times)))))
+    return look._taken
+
+
+@pytest.mark.parametrize("rate", [1e3, 1e9])
+def test_parts_were_cut_though_the_time_was_rounded(rate):
+    """A step of three radians at t = 1: at 1e9 rad/s rounding of the time is 1e-7, and 4096 parts no better."""
+    assert len(taken(lambda times: np.sin(rate * (times - 1)), 1.0, 1 + 3 / rate)) <= 16
+
+
+def test_parts_of_a_step_are_as_short_as_a_quantity_needs():
+    """Truth: the polynomials are the quantity, to 1e-9."""
+    parts = taken(lambda times: np.tanh(100 * (times - 1.2)), 1.0, 2.0)
+    assert sum(2 * half for _, half, _ in parts) == pytest.approx(1.0)
+    for middle, half, (coefficients,) in parts:
+        x = np.linspace(-1, 1, 9)
+        assert np.polyval(coefficients[::-1], x) == pytest.approx(np.tanh(100 * (middle + half * x - 1.2)), abs=1e-9)
