@@ -13,6 +13,7 @@ stable for stiff motions.
 
 import time
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 from scipy.integrate import DOP853, OdeSolver, Radau
@@ -277,7 +278,8 @@ class RobustEngine:
         self._move(solver.t, solver.y)
         if self.stiff and isinstance(solver, DOP853):
             self._begin(self.time, self.state)
-        return Step(start, self.time, lambda times: self._projected(times, solver.dense_output()(times)))
+        between = cache(solver.dense_output)  # it takes three evaluations
+        return Step(start, self.time, lambda times: self._projected(times, between()(times)))
 
     def _projected(self, times: Vector, states: Matrix) -> Matrix:
         """States between two steps, on the constraints."""
