@@ -369,13 +369,13 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     -------
     list of float
     """
-    matrices = program_with_values(problem, problem.matrices)
-    assigned = {name for name, _ in matrices.assignments}
+    assigned = {name for name, _ in problem.matrices.assignments}
     laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
     if not laws:
         return []
     of_tables = (name for table in problem.tables for name in table.inputs)
-    law = computing(replace(matrices, inputs=("t", *of_tables), outputs=laws), laws)
+    law = program_with_values(problem, computing(replace(problem.matrices, outputs=laws), laws))
+    law = replace(law, inputs=("t", *of_tables))
     values, grid = TimeFunction(law, problem.tables), np.linspace(start, end, POINTS)
     signs = np.sign(values(grid))
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)

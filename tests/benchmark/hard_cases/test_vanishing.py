@@ -4,6 +4,7 @@ import pickle
 from math import pi
 
 import pytest
+from problems import problem as example
 from refusing import failing
 
 from holonom.failures import ErrorKind
@@ -50,6 +51,13 @@ def test_zeros_of_a_control_that_is_no_vanishing_length_are_harmless(described, 
     problem = described(constraint, "1 - t", state)
     assert zeros_of_controls(problem, 0.0, 2.0) == [1.0]
     assert vanishing_times(problem, MotionMatrices(problem), 2.0) == []
+
+
+def test_a_rate_that_is_a_number_hid_the_zero_of_its_law():
+    """Where a parameter is open, values are put into programs, and dot(u) = -1 was no assignment any more."""
+    problem = example("hard/vanishing_length.mac", "whirling_scene", open_parameters=("m",))
+    assert zeros_of_controls(problem, 0.0, 2.0) == [1.0]
+    assert vanishing_times(problem, MotionMatrices(problem), 2.0) == [1.0]
 
 
 def test_length_vanishes_about_a_hinge_that_moves(described):
