@@ -11,7 +11,7 @@ from holonom.crosscheck.digits import WORKING_DIGITS
 from holonom.crosscheck.motion_program import verify_programs
 from holonom.crosscheck.motion_series import verify_series
 from holonom.crosscheck.motion_start import nearer_start
-from holonom.crosscheck.motions import read_motions
+from holonom.crosscheck.motions import read_motions, verdicts_out_of_time
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.switches import law_times
@@ -121,6 +121,14 @@ def test_only_a_nearer_start_is_reported(asked):
         start = {name: mp.mpf(text) for name, text in programs.problems[Solve.DIRECT].start.items()}
         assert nearer_start(motion, start) == ""
         assert "nearer to the guess" in nearer_start(motion, start | {"y": -start["y"], "dot(y)": -start["dot(y)"]})
+
+
+def test_motions_that_took_too_long_are_undecided_in_each_scene(asked):
+    description, *_ = asked
+    without_scenes = replace(description, content=description.content | {"scenes": []})
+    for described, name in ((description, "run"), (without_scenes, None)):
+        (verdict,) = verdicts_out_of_time(described)
+        assert (verdict.scene, verdict.verdict) == (name, Verdict.UNDECIDED)
 
 
 def test_a_guess_on_the_constraints_is_no_nearer_start(tmp_path):

@@ -42,3 +42,10 @@ def test_rates_of_a_step_are_zero_beside_it():
 def test_what_is_infinite_or_imaginary_is_no_value(expression):
     with pytest.raises(IrregularPoint):
         Steps([expression]).real_at({X: mp.zero})
+
+
+def test_a_power_has_a_value_up_to_an_exponent_of_e_of_ten_to_the_eight():
+    y = sp.Symbol("y", real=True)
+    near, far = (Steps([X**y]).at({X: mp.mpf("1.001"), y: mp.mpf(10) ** digits})[0] for digits in (4, 12))
+    assert near == pytest.approx(21916.681339048373)  # exp(10000 log(1.001))
+    assert far is None
