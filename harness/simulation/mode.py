@@ -25,7 +25,7 @@ from ..program.sign_pattern import (
 )
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import settle
-from .constraints.singularity import no_controls, require_gradient, shortly_before, vanishing_times
+from .constraints.singularity import laws_of, no_controls, require_gradient, shortly_before, vanishing_times
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
 from .engines.engine import Solutions, Step, Task
@@ -146,7 +146,7 @@ class Mode:
         dense = None if problem.signs or problem.tables else dense
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
-        self._vanishing = vanishing_times(self.problem, self.matrices, self._end)
+        self._vanishing = vanishing_times(self.problem, self.matrices, laws_of(problem), self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         self.by_time = time_dependence(
             program_with_values(self.problem, self.problem.matrices),

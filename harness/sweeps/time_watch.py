@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, names_in
 from ..program.rewriting import with_numbers
-from ..simulation.constraints.singularity import zeros_of_controls
+from ..simulation.constraints.singularity import laws_of, zeros_of_controls
 from ..simulation.initial_state import with_values
 from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence
 
@@ -41,6 +41,7 @@ class TimeWatch:
         degrees, involved = _in_time(problem)
         self._involved = [problem.parameters.index(name) for name in involved]
         self._smooth = all(degree <= LOW for degree in degrees)
+        self._laws = laws_of(problem)
         self._known: dict[tuple[float, ...], tuple[bool, tuple[float, ...]]] = {}
 
     def look(self, values: Floats) -> tuple[NDArray[np.bool_], tuple[float, ...]]:
@@ -72,7 +73,7 @@ class TimeWatch:
         if key not in self._known:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
             by_time = self._dependence(numbers)
-            crossing = zeros_of_controls(with_values(self._problem, numbers), self._start, self._end)
+            crossing = zeros_of_controls(with_values(self._problem, numbers), self._laws, self._start, self._end)
             alone = bool(crossing) or by_time.end is not None or by_time.unresolved is not None
             self._known[key] = alone, by_time.stops
         return self._known[key]

@@ -10,7 +10,7 @@ step shrinks, and only the reaction is infinite. So these times are found before
 there is a point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the initial state.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -253,7 +253,25 @@ def _vanishes(last: float, least: float) -> bool:
     return least < SMALL and least < REACH * (last - least)
 
 
-def vanishing_times(problem: MotionProblem, matrices: MotionMatrices, end: float) -> list[float]:
+def laws_of(problem: MotionProblem) -> tuple[str, ...]:
+    """Return the controls whose laws are in the programs, in order.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion, without numbers for its signs: a rate that is a number then is no longer in its programs.
+
+    Returns
+    -------
+    tuple of str
+    """
+    assigned = {name for name, _ in problem.matrices.assignments}
+    return tuple(name for name, _ in problem.matrices.assignments if f"dot({name})" in assigned)
+
+
+def vanishing_times(
+    problem: MotionProblem, matrices: MotionMatrices, controls: Collection[str], end: float
+) -> list[float]:
     """Return the times at which the gradient of a constraint may vanish, in order.
 
     Parameters
@@ -262,6 +280,8 @@ def vanishing_times(problem: MotionProblem, matrices: MotionMatrices, end: float
         The motion.
     matrices : MotionMatrices
         Matrices of the same motion.
+    controls : collection of str
+        As for `zeros_of_controls`.
     end : float
         Last time of the search, which begins with the motion.
 
@@ -270,7 +290,7 @@ def vanishing_times(problem: MotionProblem, matrices: MotionMatrices, end: float
     list of float
     """
     start, state = start_of(problem)
-    times = zeros_of_controls(problem, start, end)
+    times = zeros_of_controls(problem, controls, start, end)
     constraints = range(len(problem.multipliers)) if times else ()
     return sorted({t for beta in constraints for t in _without_gradient(matrices, times, state, beta)})
 
@@ -353,13 +373,15 @@ def no_controls(t: float) -> HolonomError:
     return HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
 
 
-def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[float]:
+def zeros_of_controls(problem: MotionProblem, controls: Collection[str], start: float, end: float) -> list[float]:
     """Return the times of sign changes of a control inside a time span, in order.
 
     Parameters
     ----------
     problem : MotionProblem
         The motion, whose controls are functions of the time.
+    controls : collection of str
+        Names of the controls, as `laws_of`. Those without an assignment are numbers.
     start : float
         First time of the search.
     end : float
@@ -370,7 +392,7 @@ def zeros_of_controls(problem: MotionProblem, start: float, end: float) -> list[
     list of float
     """
     assigned = {name for name, _ in problem.matrices.assignments}
-    laws = {name: Name(name) for name in assigned if f"dot({name})" in assigned}
+    laws = {name: Name(name) for name in controls if name in assigned}
     if not laws:
         return []
     of_tables = (name for table in problem.tables for name in table.inputs)
