@@ -31,6 +31,7 @@ from ..simulation.nominal import nominal_of
 from .extremes import Steps
 from .polynomials import rates_of
 from .quantities import along_motion, expressions_of
+from .stack import FastestPlace
 
 ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
 TOGETHER = 32  # batches of the same number of steps that are looked at together
@@ -132,7 +133,7 @@ class BatchEngine:
         energy, power, *rates = expressions_of(wanted, along_motion(problem, known))
         work, squared_error = map(heyoka.expression, ACCURACY_INTEGRALS)
         error = energy - heyoka.par[len(parameters)] - work / SMALL
-        equations += [(work, SMALL * power), (squared_error, SMALL * error * error)]
+        equations += [(work, SMALL * power), (squared_error, SMALL * error**2.0)]
         equations += [(heyoka.expression(f"along[{k}]"), SMALL * rate) for k, rate in enumerate(rates)]
         velocities = [variable for variable, _ in equations[self._size // 2 : self._size]]
         self._integrator = heyoka.taylor_adaptive_batch(
@@ -142,11 +143,11 @@ class BatchEngine:
             compact_mode=problem.motion.operations * elements >= COMPACT_FROM,
         )
         self._state, self._time = self._integrator.state, self._integrator.time
-        self._pars = np.zeros((len(problem.parameters) + 1, elements))  # the last one is the energy at the initial time
+        self._pars = self._integrator.pars  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
         self._sizes = sizes_of_state(self._size, self._unit)[:, None]  # of the state in the integrator
         self._recorder = _StepRecorder(self._integrator, self._behind) if along else None
-        self._inputs = Inputs(problem)
+        self._place, self._inputs = FastestPlace(), Inputs(problem)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
         self._corrections = None
         if projects and problem.multipliers:
@@ -178,7 +179,7 @@ class BatchEngine:
         pars = np.concatenate([values, begun[None]])
         for first in range(0, k, elements):
             here = slice(first, min(first + elements, k))
-            batch = self._batch(starts[:, here], pars[:, here], _of(ends, here))
+            batch = self._place.call(partial(self._batch, starts[:, here], pars[:, here], _of(ends, here)))
             found[:, :, here], arrived[here], shortest[here], taken[here], recorded = batch
             if recorded is not None:
                 looking.add(here, recorded)
@@ -234,7 +235,6 @@ class BatchEngine:
             options = {"callback": recorder.begin(), "write_tc": True}
         integrator.set_time(self._start / self._unit)
         self._state[...], self._pars[...] = starts, pars
-        integrator.pars[...] = pars
         reached, well = np.empty((len(stops), self._behind, self._elements)), np.ones(self._elements, dtype=bool)
         shortest, longest = np.full(self._elements, np.inf), np.zeros(self._elements)
         taken = np.zeros(self._elements, dtype=int)

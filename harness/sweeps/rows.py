@@ -224,7 +224,9 @@ class RowMaker:
         points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
         rows.residual[done] = residual[well]
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
-        seen = self._without_rounding(found.seen, self._crossing_at, states, values, nominal)
+        seen = found.seen
+        if self._crossing:
+            seen = self._without_rounding(seen, self._crossing_at, states, values, nominal)
         self._keep_along(rows, done, seen[:, well])
         return there[~well]
 

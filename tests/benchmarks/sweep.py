@@ -15,8 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from fractions import Fraction
-from functools import cache
-from itertools import starmap
+from functools import cache, partial
 from pathlib import Path
 from statistics import median
 from typing import NamedTuple
@@ -36,12 +35,13 @@ from holonom.sweeps.axes import read_axes
 from holonom.sweeps.outputs import read_quantities
 from holonom.sweeps.request import CHUNK
 from holonom.sweeps.rows import Plan, RowMaker
+from holonom.sweeps.stack import PLACES
 
 ROOT = Path(__file__).parents[2]
 CRANE, PAPER = ROOT / "examples" / "crane.mac", ROOT / "examples" / "paper" / "paper.mac"
 GRID = ("m=50:500:100", "c=0:40:100")
 MOTIONS, TOLERANCE = 10_000, 1e-12  # a chunk
-DEPTHS, REPEATS, TURNS = 4, 12, 3
+REPEATS, TURNS = 12, 3
 FIRST = 24  # chunks: those that two workers are given at once
 MILLION = 1_000_000
 
@@ -106,18 +106,15 @@ def by_sweep(keep: str, stabilization: Stabilization) -> Callable[[], np.ndarray
 def seconds(*functions: Callable[[], object]) -> list[float]:
     """Least time that each was given on the processor, taken in turns, after what is compiled first.
 
-    Where the stack happens to lie when compiled code is called, so that its vectors cross the lines of the cache or do
-    not, decides about a fifth of its time: each function is called at several depths.
+    Each function is called at both places, because the place of the stack decides about a quarter of its time.
     """
     for function in functions:
         function()
-    turns = [[_processor(_deeper(function, turn % DEPTHS)) for function in functions] for turn in range(REPEATS)]
+    turns = [
+        [_processor(partial(PLACES[turn % len(PLACES)], partial(function))) for function in functions]
+        for turn in range(REPEATS)
+    ]
     return [min(each) for each in zip(*turns, strict=True)]
-
-
-def _deeper(function: Callable[[], object], depth: int) -> Callable[[], object]:
-    """The same function, called from several frames of C."""
-    return function if depth == 0 else _deeper(lambda: list(starmap(function, [()])), depth - 1)
 
 
 def _processor(function: Callable[[], object]) -> float:
