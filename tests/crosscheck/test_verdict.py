@@ -115,6 +115,14 @@ def test_what_is_given_counts_at_the_points_and_in_the_proof() -> None:
     assert verify(Comparison((Pair("z", Z, 2 + X**2),), given), "seed").verdict is Verdict.DISAGREES
 
 
+def test_what_is_given_counts_in_the_arguments_of_functions() -> None:
+    """The normal form does not know the sum of the angles; exp(z) and exp(x y) are one function of one symbol."""
+    angles = sp.asin(X / 3) + sp.acos(X / 3)
+    for given, expected in (({Z: X * Y}, Verdict.AGREES), ({Z: 1 + X * Y}, Verdict.DISAGREES)):
+        pair = Pair("product", sp.exp(Z) * angles, sp.exp(X * Y) * sp.pi / 2)
+        assert verify(Comparison((pair,), given), "seed").verdict is expected
+
+
 def test_the_last_pair_counts_as_much_as_the_first() -> None:
     pairs = (Pair("x", X, X), Pair("y", Y, Y), Pair("z", Z, Z + 1))
     assert verify(Comparison(pairs), "seed").verdict is Verdict.DISAGREES
