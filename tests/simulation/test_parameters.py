@@ -177,3 +177,14 @@ slide : holonomic_scene(system, parameter_values = [m = 1], initial_state = [x =
     )
     assert scene.simulate(samples=2, m=1)["x"][-1] == pytest.approx(1)
     assert scene.simulate(samples=2, m=0)["x"][-1] == pytest.approx(1)
+
+
+def test_a_setting_that_is_no_parameter_changes_the_equations(write_scene):
+    """A force of 2 moves the mass M by 1/M in the time 1."""
+    scene = holonom.load(
+        write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = setting('M, 1)*dot(x)^2/2, forces = [2])$
+push : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""")
+    )
+    moved = [scene.simulate(samples=2, M=mass)["x"][-1] for mass in (1, 4, 5)]
+    assert moved == pytest.approx([1, 1 / 4, 1 / 5])
