@@ -62,6 +62,7 @@ class DescribedEquations:
         self.controls = tuple(u for u in system.controls if u.name in scene.control_law)
         self.found = tuple(u for u in system.controls if u not in (*self.controls, *self.coordinates))
         self.multipliers, self._system, self._names = system.multipliers, system, {}
+        self._values = values
         constraints = [*system.constraints, *map(exact, scene.servo_constraints)]
         rates = [system.time_derivative(f) for f in constraints]
         self.outputs = tuple(scene.outputs)
@@ -95,10 +96,23 @@ class DescribedEquations:
         self._smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
         self._steps = Steps(self._smooth)
 
-    @property
-    def motion_forces(self) -> tuple[sp.Expr, ...]:
-        """Generalized forces other than those of the potential."""
-        return self._system.forces
+    @cached_property
+    def may_feed_energy(self) -> bool:
+        """False if no force increases the energy while the controls are constant.
+
+        Forces have a potential, or are gyroscopic or linear and dissipative.
+        """
+        q, v = self._groups["q"], self._groups["v"]
+        constant = dict.fromkeys([*self._groups["du"], *self._groups["ddu"]], 0)
+        forces = sp.Matrix([each.subs(self._values).subs(constant) for each in self._system.forces])
+        forces = forces.col_join(sp.zeros(len(q) - len(forces), 1))
+        at_rest = forces.subs(dict.fromkeys(v, 0))
+        slopes = at_rest.jacobian(q)
+        power = sp.expand((forces - at_rest).dot(v))
+        damping = -sp.hessian(power, v) / 2
+        linear = not damping.free_symbols and sp.expand(power + (sp.Matrix([v]) * damping).dot(v)) == 0
+        takes = linear and bool(damping.is_positive_semidefinite)
+        return not (takes and all(sp.simplify(each) == 0 for each in slopes - slopes.T))
 
     @cached_property
     def reacting(self) -> list[int]:
@@ -590,9 +604,8 @@ def _conditions_on_stability(
             yield Condition(f"{place}instability", not np.any(parts > clear))
         case "stable":
             symmetric = N.T @ here["equation_by_q"] @ N if len(N) == n else K
-            forced = any(force != 0 for force in equations.motion_forces)
             positive = m == 0 or np.linalg.eigvalsh((symmetric + symmetric.T) / 2)[0] > 0
-            yield Condition(f"{place}minimum of the energy", forced or not positive)
+            yield Condition(f"{place}minimum of the energy", equations.may_feed_energy or not positive)
 
 
 def _of(found: Sequence[Mapping[str, Any]], key: str) -> list[Any]:

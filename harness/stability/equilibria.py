@@ -4,9 +4,9 @@ At rest the equations of motion are r(q, lambda) = 0, f(q) = 0. Newton's method 
 points. More solutions may exist, unless `holonom.stability.real_solutions` counts as many. Stability follows from two
 theorems:
 
-- If all forces have a potential, q is stable if the second variation of V - T0 on the constraint manifold is
-  positive definite: the energy has a strict minimum there (Lagrange and Dirichlet; Merkin, Introduction to the Theory
-  of Stability, chapter 3; gyroscopic forces do not affect this).
+- If all forces have a potential, or are gyroscopic or linear and dissipative, q is stable if the second variation of
+  V - T0 on the constraint manifold is positive definite: the energy has a strict minimum there, and never grows
+  (Lagrange and Dirichlet; Merkin, Introduction to the Theory of Stability, chapters 3 and 6).
 - It is asymptotically stable if all eigenvalues of the linearised motion have negative real parts, and unstable if one
   has a positive real part (Lyapunov; Merkin, chapter 4).
 
@@ -593,17 +593,15 @@ def _same(one: Vector, other: Vector) -> bool:
 
 
 def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
-    """Decide the stability by the second variation, if any, and the eigenvalues of A."""
-    if not forced:
-        values = np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2)
-        if np.all(values > found.least):
-            return Stability.STABLE
+    """Decide the stability by the eigenvalues of A or the second variation."""
     entries = np.zeros_like(A)
     entries[len(found.stiffness) :, : len(found.stiffness)] = found.error
     parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real, entries)
-    if np.any(certain & (parts > 0)):
-        return Stability.UNSTABLE
-    return Stability.ASYMPTOTIC if np.all(certain & (parts < 0)) else Stability.UNDECIDED
+    if len(A) and np.all(certain & (parts < 0)):
+        return Stability.ASYMPTOTIC
+    if not forced and np.all(np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2) > found.least):
+        return Stability.STABLE
+    return Stability.UNSTABLE if np.any(certain & (parts > 0)) else Stability.UNDECIDED
 
 
 def certain_distances(

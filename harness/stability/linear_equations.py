@@ -54,7 +54,7 @@ class LinearEquations:
         "Number of servo-constraints, the last of the constraints. Their multipliers are zero.", minimum=0
     )
     tables: tuple[Table, ...] = entry("Tables of the law, as of a motion problem.")
-    forced: bool = entry("Whether forces without a potential act.")
+    forced: bool = entry("Whether forces act that are not known to keep or take energy.")
     law: Program | None = entry(
         "Program of t and the tables' inputs: u, dot(u), ddot(u) of the controls with a law; null if one has none."
     )

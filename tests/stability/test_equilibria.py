@@ -94,7 +94,13 @@ def test_controls_are_constant():
         # gyroscopic forces hold it on a hill: stable, but neither theorem says so
         ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x))", Stability.UNDECIDED),
         ("potential_energy = x^2 + y^2, forces = [-dot(x), -dot(y)]", Stability.ASYMPTOTIC),
-        ("potential_energy = x^2 + y^2, forces = [-dot(x), 0]", Stability.UNDECIDED),
+        ("potential_energy = x^2 + y^2, forces = [-dot(x), 0]", Stability.STABLE),  # y swings on
+        ("potential_energy = x^2 + y^2, forces = [3*dot(y) - dot(x), -3*dot(x)]", Stability.ASYMPTOTIC),
+        ("potential_energy = x^2 + y^2, forces = [3*dot(y), -3*dot(x)]", Stability.STABLE),  # gyroscopic
+        ("potential_energy = x^2, forces = [y, x - 2*y]", Stability.STABLE),  # of a potential
+        ("potential_energy = x^2, forces = [a = [y, -x], b = [-y, x - 2*y]]", Stability.STABLE),
+        ("potential_energy = x^2 + y^2, forces = [dot(y), dot(x)]", Stability.UNSTABLE),  # takes and feeds
+        ("potential_energy = x^2 + y^2, forces = [-x*dot(y), -x*dot(x)]", Stability.UNDECIDED),
         ("potential_energy = x^2 + y^2, forces = [-dot(x), dot(y)/9]", Stability.UNSTABLE),
         ("potential_energy = x^2 + y^2, forces = [y/3, -x/3]", Stability.UNSTABLE),  # circulatory
     ],
