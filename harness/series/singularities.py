@@ -30,7 +30,7 @@ from ..program.motion_program import (
     names_used,
 )
 from ..program.rewriting import computing
-from .radius import COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
+from .radius import COARSE, COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
 RADII, ANGLES = 36, 24  # of the points that Newton's method begins from
@@ -53,7 +53,7 @@ Evaluate = Callable[[Any], Sequence[Any]]
 def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Program | None, t0: mpmath.mpf) -> Radius:
     """Return the radius of convergence, by a singularity of the equations if nearer.
 
-    Otherwise it is the estimate from the coefficients.
+    Otherwise, and if this leaves a nearer one open, it is the estimate from the coefficients.
 
     Parameters
     ----------
@@ -77,12 +77,27 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     for zero in zeros:
         if abs(zero.place) <= bound and _is_singular(program, series, t0, zero.place):
             found = _refined(zero, series, t0)
-            if radius in UNTOLD and _depends_on_state(program):
-                return _at_most(abs(found.place), radius)
+            if _depends_on_state(program):
+                if radius in UNTOLD:
+                    return _at_most(abs(found.place), radius)
+                if _leaves_open(radius, abs(found.place)):
+                    return radius
             as_far = [each for each in zeros if abs(abs(each.place) - abs(zero.place)) <= CIRCLE * abs(zero.place)]
             refined = [found if each is zero else _refined(each, series, t0) for each in as_far]
             return _located(found, _each_once(each.place for each in refined))
     return radius
+
+
+def _leaves_open(radius: Radius, distance: float) -> bool:
+    """Return True if coefficients do not exclude a nearer singularity.
+
+    The motion itself may be singular there, at times at which its equations are regular.
+    """
+    return (
+        radius.estimate is not None
+        and radius.uncertainty > COARSE * radius.estimate
+        and distance > radius.estimate - radius.uncertainty
+    )
 
 
 def _at_most(bound: float, radius: Radius) -> Radius:

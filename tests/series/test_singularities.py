@@ -4,7 +4,9 @@ import math
 from fractions import Fraction
 
 import mpmath
+import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import holonom
 from holonom.program.motion_program import Operation
@@ -104,6 +106,34 @@ def test_few_coefficients_and_a_located_singularity_give_an_upper_bound_alone():
     """x = 1/(1 - t)^2 nearly: t = 5 is beyond its pole."""
     found = radius(ONE.format(force="6*x^2 + 1/(5 - t)/1000", x=1, v=2), order=8)
     assert found.estimate is None
+
+
+CURVE = """
+system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2/2 + dot(x)*dot(y)/2 + dot(y)^2,
+  forces = [0, -2*sqrt(y + 2) + 1/(3 - t)], constraints = [y - exp(x)])$
+slide : holonomic_scene(system, initial_state = [x = 2, y = exp(2), dot(x) = -1/2, dot(y) = -exp(2)/2])$
+"""
+
+
+def mass_on_curve(time):
+    """M(x) = 1 + exp(x) + 2 exp(2x), the mass along y = exp(x), by an integration along a ray of complex times."""
+
+    def rates(s, state):
+        v, e = state[1], np.exp(state[0])
+        force = (1 / (3 - s * time) - 2 * np.sqrt(e + 2)) * e - (e + 4 * e**2) / 2 * v**2
+        return time * np.array([v, force / (1 + e + 2 * e**2)])
+
+    e = np.exp(solve_ivp(rates, (0, 1), [2 + 0j, -0.5 + 0j], method="DOP853", rtol=1e-11, atol=1e-11).y[0, -1])
+    return abs(1 + e + 2 * e**2)
+
+
+@pytest.mark.parametrize("order", [18, 20, 40])
+def test_a_root_test_that_a_singularity_of_the_equations_agrees_with_was_taken_for_it(order):
+    """The motion ends at t = 1.4713 + 0.2232 i, where M = 0, before the pole of the force at t = 3."""
+    end = 1.4713087 + 0.2232381j
+    assert mass_on_curve(0.9999 * end) < 0.03  # as the power 2/3 of what is left: 118 at the start
+    found = radius(CURVE, order=order)
+    assert abs(found.estimate - abs(end)) <= found.uncertainty
 
 
 @pytest.mark.parametrize(
