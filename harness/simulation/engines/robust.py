@@ -44,7 +44,6 @@ LONGER = (1.0, 1.5, 2.25)
 CLEAR = 0.5  # least singular value at the end of a collocation step, in terms of the one at its start
 SHORTER = 0.7  # share of the way to the singular configuration left after which a rejected step is tried again
 CLOSEST = 1e-7  # such a way, relative to the time or to its nominal size, at which the search is given up
-PLACE = 1e-6  # share of a collocation step to which the place of the singular configuration is found
 UNTRUSTED = 1e-6  # relative singular values in which no digits are left
 FIRST, LEAST_FIRST, UNFELT = 0.01, 1e-6, 1e-5  # of the estimate of a first step
 RADAU_ORDER = 4  # of its error estimate in terms of the step
@@ -195,13 +194,6 @@ class RobustEngine:
     def near_singularity(self) -> bool:
         """True if a singular configuration is near or on the current collocation step."""
         return self._collocation is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
-
-    @property
-    def singular_times(self) -> list[float]:
-        """Times at which the motion went through a singular configuration."""
-        return [
-            time_point for collocation in self._collocations if (time_point := self._place(collocation)) <= self.time
-        ]
 
     def solutions(self, times: Vector, states: Matrix) -> Solutions:
         """Return the unknowns of the equations of motion at several times.
@@ -409,17 +401,6 @@ class RobustEngine:
             if collocation is not None and self._trusted(collocation):
                 return self._taken(collocation)
         raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(self.time, SINGULAR_START))
-
-    def _place(self, collocation: Collocation) -> float:
-        """Return the time at which the least counted singular value vanishes."""
-        from scipy.optimize import minimize_scalar
-
-        def least(t: float) -> float:
-            return self._least_at(t, collocation(np.array([t]))[:, 0])
-
-        tolerance = PLACE * (collocation.end - collocation.start)
-        bounds = collocation.start, collocation.end
-        return float(minimize_scalar(least, bounds=bounds, method="bounded", options={"xatol": tolerance}).x)
 
     def _taken(self, collocation: Collocation) -> Collocation:
         self._collocations.append(collocation)
