@@ -211,5 +211,7 @@ class Executed:
 
     def _executing(self, function: Function) -> set[str]:
         name = function.name.rpartition(".")[2].lstrip("$")
-        callers = (str(each) for each in functions() if each.words & {name, f"${name}"})
+        python = function.language == "py"
+        beside = (each for each in functions() if (each.language == "py") is python)
+        callers = (str(each) for each in beside if each.words & {name, f"${name}"})
         return self._of.get(str(function)) or set().union(*(self._of.get(each, ()) for each in callers))

@@ -28,6 +28,8 @@ def test_a_function_that_was_not_measured_has_the_tests_of_its_callers():
     tests = {"tests/a.mac": {"seconds": 1, "functions": [caller]}}
     assert executed.Executed(tests).by(found[name]) == ["tests/a.mac"]
     assert executed.Executed(tests).by(OTHER) == []
+    everything_of_maxima = {"tests/a.mac": {"seconds": 1, "functions": [name for name in found if ".py::" not in name]}}
+    assert executed.Executed(everything_of_maxima).by(found["harness/sweeps/axes.py::Axes.names"]) == []
 
 
 @pytest.mark.long
