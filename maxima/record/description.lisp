@@ -57,12 +57,6 @@
       (assoc symbol *mathjson-functions*)
       (assoc symbol *described-functions*)))
 
-(defun $json_points (points)
-  (cons '($json_array)
-        (mapcar #'(lambda (point)
-                    (cons '($json_array) (mapcar #'(lambda (x) (list '($json_expression) x)) (cdr point))))
-                (cdr points))))
-
 (defun write-described (e out)
   "Write an expression that only a description may hold; nil for any other."
   (let ((head (and *is-description* (cdr (assoc (caar e) *described-functions*)))))

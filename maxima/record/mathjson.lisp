@@ -42,12 +42,12 @@
         ((eq (caar tree) '$json_expression) (write-mathjson (cadr tree) out))
         (t ($refuse '$data_not_written tree))))
 
-(defun $json_assignments (assignments)
-  "Each [name, expression] as an array of both."
+(defun $json_rows (rows)
+  "Each [expression, ...] as an array."
   (cons '($json_array)
-        (mapcar #'(lambda (each)
-                    (cons '($json_array) (mapcar #'(lambda (e) (list '($json_expression) e)) (cdr each))))
-                (cdr assignments))))
+        (mapcar #'(lambda (row)
+                    (cons '($json_array) (mapcar #'(lambda (e) (list '($json_expression) e)) (cdr row))))
+                (cdr rows))))
 
 (defun write-members (members out)
   (flet ((write-member (member out)
