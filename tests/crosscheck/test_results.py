@@ -240,6 +240,13 @@ def test_an_output_whose_terms_cancel_disagreed():
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 
+@pytest.mark.parametrize(("share", "verdict"), [(1e-9, Verdict.AGREES), (1e-5, Verdict.DISAGREES)])
+def test_a_mass_matrix_counts_to_seven_digits(share, verdict):
+    scene, content = linearized_later(PENDULUM)
+    content["mass"][0][0] *= 1 + share
+    assert verify_result(scene.description, content).verdict is verdict
+
+
 def test_a_system_without_a_degree_of_freedom_ended_in_an_internal_error():
     scene, content = linearized_later(DRIVEN)
     assert (content["A"], content["eigenvalues"]) == ([], [])
