@@ -41,6 +41,8 @@ class EnergyBalance:
     multipliers : callable
         Takes these to multipliers, shape (g, k). It is called only where constraints move, and do work, or where forces
         contain multipliers.
+    size : float
+        Energy of the nominal velocities. Work that is a rounding error of it needs no resolution.
 
     Attributes
     ----------
@@ -53,12 +55,13 @@ class EnergyBalance:
         problem: MotionProblem,
         multipliers: Callable[[Numbers, Numbers], Numbers],
         precision: Precision | str = "double",
+        size: float = 0.0,
     ) -> None:
         self._precision = read_precision(precision) if isinstance(precision, str) else precision
         self._evaluate = evaluation_once(problem, problem.energy, self._precision)
         self._inputs = Inputs(problem, self._precision)
         self._rows = {name: row for row, name in enumerate(problem.energy.outputs)}
-        self._multipliers = multipliers
+        self._multipliers, self._size = multipliers, size
         self._with_multipliers = bool(problem.reacting) or _constraints_move(problem)
         power = computing(problem.energy, {"power"})
         hidden = bool(problem.tables) or may_hide(power, problem.parameters)
@@ -174,7 +177,8 @@ class EnergyBalance:
         times = self.times_between([start], [end])
         power = self.power(times, np.repeat(state, len(times), axis=1))
         sizes = np.abs(as_floats((self._to_coefficients * power).sum(axis=1)))
-        enough = np.max(sizes[-LAST:]) <= 10.0 ** (-self._precision.sure_digits / 2) * np.max(sizes)
+        rounding = 10.0**-self._precision.sure_digits * self._size / float(end - start)
+        enough = np.max(sizes[-LAST:]) <= max(10.0 ** (-self._precision.sure_digits / 2) * np.max(sizes), rounding)
         return bool(enough or not np.isfinite(sizes).all())
 
     @cached_property

@@ -141,7 +141,8 @@ class Mode:
         self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, precision)
         obstruction = analytic.obstruction or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
         self.problem = replace(analytic, obstruction=obstruction)
-        self.balance = EnergyBalance(self.problem, self._multipliers, precision)
+        energy = self.matrices.nominal.energy(self.matrices(*start_of(analytic)).mass)
+        self.balance = EnergyBalance(self.problem, self._multipliers, precision, energy)
         dense = bool(request.samples != FINAL_STATE_ALONE or self.balance.inner_states)
         dense = None if problem.signs or problem.tables else dense
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
