@@ -11,6 +11,7 @@ from holonom.crosscheck.digits import WORKING_DIGITS
 from holonom.crosscheck.motion_program import verify_programs
 from holonom.crosscheck.motion_series import verify_series
 from holonom.crosscheck.motion_start import nearer_start
+from holonom.crosscheck.motion_states import States
 from holonom.crosscheck.motions import read_motions, verdicts_out_of_time
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
@@ -121,6 +122,13 @@ def test_only_a_nearer_start_is_reported(asked):
         start = {name: mp.mpf(text) for name, text in programs.problems[Solve.DIRECT].start.items()}
         assert nearer_start(motion, start) == ""
         assert "nearer to the guess" in nearer_start(motion, start | {"y": -start["y"], "dot(y)": -start["dot(y)"]})
+
+
+def test_every_fourth_state_is_on_either_side_of_zero(asked):
+    description, programs, _ = asked
+    states = States(DescribedMotion(description, description.scenes[0]), programs.problems[Solve.DIRECT], "sides")
+    drawn = [states.state(attempt)["x"][0] for attempt in range(1, 80, 4)]
+    assert min(drawn) < 0 < max(drawn)
 
 
 def test_motions_that_took_too_long_are_undecided_in_each_scene(asked):

@@ -1,5 +1,6 @@
 """A scene's motion as Maxima hands it over."""
 
+import pickle
 from pathlib import Path
 
 import pytest
@@ -27,6 +28,11 @@ def test_paper_starts_where_the_scene_says(paper):
         {"t": 0, "q1": 1, "q2": 2, "q3": 0.9, "dot(q1)": 1 / 2, "dot(q2)": -1 / 3, "dot(q3)": 3 + 0.3 / 6}
     )
     assert tuple(map(float, paper.time_span)) == (0, 10)
+
+
+def test_another_process_has_all_but_what_was_compiled(paper):
+    sent = pickle.loads(pickle.dumps(paper))
+    assert (sent.start, sent.motion) == (paper.start, paper.motion)
 
 
 def test_part_of_a_program_gives_the_numbers_of_the_whole(paper):

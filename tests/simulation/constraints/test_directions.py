@@ -26,3 +26,11 @@ def test_units_of_the_coordinates_make_no_mass_singular():
         weighted = weighted_constraints(mass, np.ones((1, 2)))
         assert weighted.stiffening is None
         np.testing.assert_allclose(weighted.factor @ weighted.factor.T, mass, rtol=1e-14)
+
+
+def test_several_states_with_a_singular_mass_matrix_have_each_its_own_metric():
+    masses = np.array([np.diag([1.0, 0.0]), np.diag([5.0, 0.0])])
+    jacobians = np.array([[[0.0, 1.0]], [[1.0, 1.0]]])
+    together = weighted_constraints(masses, jacobians).singular_values()
+    alone = [weighted_constraints(*each).singular_values() for each in zip(masses, jacobians, strict=True)]
+    np.testing.assert_allclose(together, alone, rtol=1e-14)

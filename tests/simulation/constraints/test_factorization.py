@@ -25,10 +25,12 @@ def random_system(seed: int, redundant: int):
     return root @ root.T, draw.normal(size=n), jacobian, -jacobian @ draw.normal(size=n)
 
 
+def factored_of(mass, jacobian):
+    return factored_constraints(mass, jacobian, rank_of(weighted_constraints(mass, jacobian).singular_values()))
+
+
 def solve(mass, force, jacobian, curvature):
-    rank = rank_of(weighted_constraints(mass, jacobian).singular_values())
-    factored = factored_constraints(mass, jacobian, rank)
-    return factored.unknowns(force, curvature)
+    return factored_of(mass, jacobian).unknowns(force, curvature)
 
 
 @RANDOM
@@ -42,6 +44,15 @@ def test_accelerations_keep_the_constraints_and_multipliers_are_the_least(seed, 
     assert np.allclose(jacobian.T @ multipliers, reactions, rtol=0, atol=1e-13 * scale * np.linalg.norm(reactions))
     least = np.linalg.pinv(jacobian.T, rcond=1e-10) @ reactions
     assert np.allclose(multipliers, least, rtol=0, atol=1e-12 * scale * (1 + np.linalg.norm(least)))
+
+
+@pytest.mark.parametrize("redundant", [0, 2])
+def test_a_correction_is_the_least_in_the_mass_metric(redundant):
+    """Of all d with J d = -r, d = -A^-1 J^T (J A^-1 J^T)^+ r has the least d . A d."""
+    mass, _, jacobian, residual = random_system(7, redundant)
+    along = np.linalg.solve(mass, jacobian.T)
+    least = -along @ np.linalg.pinv(jacobian @ along, rcond=1e-10) @ residual
+    np.testing.assert_allclose(factored_of(mass, jacobian).correction(residual), least, rtol=1e-9)
 
 
 @RANDOM
