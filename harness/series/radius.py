@@ -85,7 +85,12 @@ NEARER = 0.9  # of the estimate: where a weak singularity may hide
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
 UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur, and that none follow is not proved"))
-ENTIRE = Radius(None, None, (), translatable("infinite: the coefficients are those of an entire motion"))
+ENTIRE = Radius(
+    None,
+    None,
+    (),
+    translatable("infinite as far as these orders show: the coefficients are those of an entire motion"),
+)
 UNDECIDED = Radius(None, None, (), translatable("unknown: these orders do not determine it"))
 COMPLEX_PAIR = translatable("the nearest singularity is a complex pair")
 REAL_TIME = translatable("the nearest singularity is a real time")

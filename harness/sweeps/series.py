@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     """Return the radius of convergence of each motion about its initial time.
 
-    It is infinite for an entire motion, nan if the orders do not determine it.
+    It is infinite if the orders show an entire motion, nan if they do not determine it.
 
     Parameters
     ----------
