@@ -358,4 +358,5 @@ def with_verdicts(found: FreeMotion) -> FreeMotion:
     laws = tuple(replace(law, check=trial.of_law(law.controls, law.positive)) for law in universal.laws)
     verdict, contradiction = trial.verdict_on_laws(universal.verdict, [law.check for law in laws])
     reason = contradiction or universal.reason
-    return replace(found, motion=motion, universal=replace(universal, verdict=verdict, laws=laws, reason=reason))
+    universal = replace(universal, verdict=UniversalVerdict(verdict), laws=laws, reason=reason)
+    return replace(found, motion=motion, universal=universal)

@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +13,14 @@ from refusing import refused
 from sympy import Function, Symbol, cos, exp, symbols
 
 from holonom.expression.presentation import formula_text
-from holonom.free_motion import FirstCoefficient, FreeMotionVerdict, SeriesOfControls, free_motion
+from holonom.free_motion import (
+    FirstCoefficient,
+    FreeMotionVerdict,
+    SeriesOfControls,
+    UniversalVerdict,
+    free_motion,
+    with_verdicts,
+)
 from holonom.language import speaking, translated
 from holonom.number_texts import number
 from holonom.program.forms import MotionProgram
@@ -30,6 +38,12 @@ t = Symbol("t", real=True)
 @cache
 def asked(example: str, scene: str | None = None):
     return free_motion(EXAMPLES / f"{example}.mac", scene, {}, Limits())
+
+
+def test_a_verdict_on_laws_that_changes_was_mere_text():
+    found = asked("paper/paper")
+    none = replace(found, universal=replace(found.universal, verdict=UniversalVerdict.NONE, laws=()))
+    assert with_verdicts(none).universal.verdict is UniversalVerdict.UNDECIDED
 
 
 def test_paper_universal_law_is_eq_15_and_the_only_one():
