@@ -26,7 +26,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import mpmath
 
@@ -102,7 +102,8 @@ TOO_FEW = Radius(
 def estimate_radius(series: Iterable[Sequence[mpmath.mpf]]) -> Radius:
     """Estimate the radius of convergence of a motion from its power series in t - t0.
 
-    The result is the most certain of the estimates of the series with the smallest radii.
+    The result is the most certain of the estimates of the series with the smallest radii. It is undecided if the
+    radius of a series is, and the root test of this one gives a smaller one.
 
     Parameters
     ----------
@@ -173,11 +174,21 @@ def estimate_radii(series: Floats) -> list[Radius]:
     return [_of_so_many(_first_end(found[first : first + each]), orders) for first in range(0, motions * each, each)]
 
 
-def _first_end(found: Sequence[Radius]) -> Radius:
+class _Row(NamedTuple):
+    """The radius of one series, and that of the root test alone if it applies."""
+
+    radius: Radius
+    by_roots: float = math.inf
+
+
+def _first_end(rows: Sequence[_Row]) -> Radius:
+    found = [row.radius for row in rows]
     finite = [radius for radius in found if radius.estimate is not None]
     if finite:
         first_end = min(radius.estimate + radius.uncertainty for radius in finite)
-        return min((r for r in finite if r.estimate - r.uncertainty <= first_end), key=lambda r: r.uncertainty)
+        best = min((r for r in finite if r.estimate - r.uncertainty <= first_end), key=lambda r: r.uncertainty)
+        nearest = min((row.by_roots for row in rows if row.radius == UNDECIDED), default=math.inf)
+        return best if nearest >= best.estimate - best.uncertainty else UNDECIDED
     return next(kind for kind in (TOO_FEW, UNDECIDED, ENTIRE, POLYNOMIAL) if kind in found)
 
 
@@ -213,7 +224,7 @@ def truncation_error(coefficients: Sequence[mpmath.mpf], radius: Radius, time: f
     return late * ratio / (1 - ratio) if ratio < 1 else math.inf
 
 
-def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
+def _radius_of(coefficients: Sequence[mpmath.mpf]) -> _Row:
     import numpy as np
 
     with np.errstate(all="ignore"):
@@ -221,35 +232,36 @@ def _radius_of(coefficients: Sequence[mpmath.mpf]) -> Radius:
         if all(c == 0 or SMALLEST < abs(x) < 1 / SMALLEST for c, x in zip(coefficients, floats, strict=True)):
             return _radii_of_floats(floats[None])[0]
         if not any(coefficients[len(coefficients) // 2 :]):
-            return POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW
+            return _Row(POLYNOMIAL if len(coefficients) > FEWEST else TOO_FEW)
         if len(coefficients) < FEWEST:
-            return TOO_FEW
+            return _Row(TOO_FEW)
         if not any(coefficients[-LAST:]):
-            return UNDECIDED
+            return _Row(UNDECIDED)
         scale = mpmath.power(max(abs(c) for c in coefficients[-LAST:]), mpmath.mpf(-1) / (len(coefficients) - 1))
         balanced = np.array([float(c * scale**n) for n, c in enumerate(coefficients)])
         return _radii_of_balanced(np.array([float(scale)]), balanced[None])[0]
 
 
-def _radii_of_floats(series: Floats) -> list[Radius]:
+def _radii_of_floats(series: Floats) -> list[_Row]:
     """Return the radii of series in double precision, shape (m, orders)."""
     import numpy as np
 
     orders = series.shape[1]
     if orders < FEWEST:
-        return [TOO_FEW] * len(series)
-    found = np.full(len(series), POLYNOMIAL if orders > FEWEST else TOO_FEW, dtype=object)
-    found[series[:, orders // 2 :].any(axis=1)] = UNDECIDED
+        return [_Row(TOO_FEW)] * len(series)
+    late = series[:, orders // 2 :].any(axis=1)
+    found = [_Row(UNDECIDED if each else POLYNOMIAL if orders > FEWEST else TOO_FEW) for each in late]
     going = np.flatnonzero(series[:, -LAST:].any(axis=1))
     scale = np.max(np.abs(series[going, -LAST:]), axis=1) ** (-1.0 / (orders - 1))
     mantissa, exponent = np.frexp(scale)  # so that no power leaves the range of the numbers
     n = np.arange(orders)
     balanced = np.ldexp(series[going] * mantissa[:, None] ** n, exponent[:, None] * n)
-    found[going] = _radii_of_balanced(scale, balanced)
-    return list(found)
+    for place, row in zip(going, _radii_of_balanced(scale, balanced), strict=True):
+        found[place] = row
+    return found
 
 
-def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
+def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[_Row]:
     """Return the radii of series with balanced coefficients.
 
     The unit of time is a scale, shape (m,), that makes their last coefficients of order one.
@@ -264,20 +276,20 @@ def _radii_of_balanced(scale: Floats, balanced: Floats) -> list[Radius]:
     first, stride = _powers(balanced)
     for powers in sorted(set(zip(first.tolist(), stride.tolist(), strict=True))):
         here = np.flatnonzero((first == powers[0]) & (stride == powers[1]))
-        found[here] = _radii_of_strided(
-            scale[here], np.ascontiguousarray(balanced[here, powers[0] :: powers[1]]), powers[1]
-        )
+        rows = _radii_of_strided(scale[here], np.ascontiguousarray(balanced[here, powers[0] :: powers[1]]), powers[1])
+        for place, row in zip(here, rows, strict=True):
+            found[place] = row
     return list(found)
 
 
-def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radius]:
+def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[_Row]:
     """Return the radii of series without missing powers, shape (m, orders).
 
     The variable is the stride-th power of the time.
     """
     last = balanced.shape[1] - 1
     if last + 1 < FEWEST:
-        return [TOO_FEW] * len(balanced)
+        return [_Row(TOO_FEW)] * len(balanced)
     envelope = _envelope(balanced)
     growth = _growth(*envelope)
     by_roots, fitted = _root_tests(*envelope, stride, scale), _fitted_radii(balanced, stride, scale)
@@ -289,7 +301,7 @@ def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[Radi
             found.append(fit)
         else:
             found.append(roots if g < FINITE_GROWTH / last and roots.uncertainty < roots.estimate else UNDECIDED)
-    return found
+    return [_Row(radius, roots.estimate) for radius, roots in zip(found, by_roots, strict=True)]
 
 
 def _powers(balanced: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -44,6 +44,7 @@ WEAKEST = mpmath.mpf("1e-25")  # of an output on that circle: a negative power t
 ROUNDED = mpmath.mpf("1e-45")  # of the largest output on that circle: one that is rounding
 TRUNCATED = 1e-3  # largest relative size of the last terms at which a series represents the motion
 SHORTER = 2 / 3  # of a series: the part that must give the same result
+SLOWEST = 7.0  # errors fall as the power -1/3 of the orders or faster: one is at most this times its change
 MOST_TESTED = 8
 UNTOLD = (TOO_FEW, UNDECIDED)
 
@@ -299,7 +300,9 @@ def _in_digits(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpm
 
 
 def _refined(zero: _Zero, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf) -> _Refined:
-    """Return a zero in many digits, with its error: the change by a shorter series.
+    """Return a zero in many digits, with its error.
+
+    The error follows from the change by a shorter series.
 
     If it is not found again, the singularity is within the circle of `_is_singular`.
     """
@@ -309,7 +312,7 @@ def _refined(zero: _Zero, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf
         circle = CIRCLE * abs(zero.place)
         if place is None or other is None or max(abs(place - zero.place), abs(other - zero.place)) > circle:
             return _Refined(zero.place, float(circle))
-        return _Refined(complex(place), float(max(abs(place - other), CONVERGED * abs(place))))
+        return _Refined(complex(place), float(max(SLOWEST * abs(place - other), CONVERGED * abs(place))))
 
 
 def _multiple_zero(evaluate: Evaluate, place: complex) -> Any:
