@@ -23,8 +23,9 @@ SHORT = {"arm", "hoist", "paper"}
 SWITCHED = """
 load("holonom.mac")$
 assume(m > 0)$ declare(n, integer)$ closed_form_size : 77$
-system : holonomic_system(title = "Switched", coordinates = [x, y], controls = [u, w], parameters = [m, k],
-  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [stop = k*max(x, 0)^2/2, weight = 981/100*m*y],
+system : holonomic_system(title = "Switched \\"on\\" \\\\ off", coordinates = [x, y], controls = [u, w],
+  parameters = [m, k], kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2,
+  potential_energy = [stop = k*max(x, 0)^2/2, weight = 981/100*m*y],
   forces = [drag = [-erf(dot(x)), 0], push = [w, 0]], constraints = [y - u*x], drawing = [circle([x, y], 1/10)])$
 run : holonomic_scene(system, effects = [push], control_law = [u = 1 + table([[0, 0], [1, 0.1], [2, 1/3]], clamped),
     w = a*if t < 1/2 then unit_step(t - 1/4) elseif t <= 1 or t > 1.5 then min(t, 1) else 12345678901234567890],
@@ -81,6 +82,7 @@ def test_conditions_tables_and_exact_numbers_are_described_again(switched, tmp_p
 def test_a_description_holds_what_its_file_says(switched):
     (run,) = switched.scenes
     assert switched.closed_form_size == 77
+    assert switched.system.title == 'Switched "on" \\ off'
     assert switched.content["assumptions"] == [["Greater", "m", 0]]
     assert switched.content["declarations"] == [["n", "integer"]]
     assert [effect.effect for effect in switched.system.potential_energy] == ["stop", "weight"]
