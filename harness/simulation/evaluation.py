@@ -5,8 +5,8 @@ take longer than it gains at the few states of interest. For very few states, Nu
 """
 
 import os
-from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -200,18 +200,21 @@ def as_floats(numbers: Numbers) -> NDArray[np.float64]:
     return np.array([float(number) for number in array.ravel()]).reshape(array.shape)
 
 
-def one_blas_thread() -> AbstractContextManager[object]:
-    """Limit BLAS to one thread inside the block.
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """Limit BLAS to one thread inside the block, or in a decorated function.
 
     Matrices here have some dozens of rows. On a busy machine BLAS takes twenty times as long for them with its threads
     as without, as measured.
 
-    Returns
-    -------
-    context manager
+    Yields
+    ------
+    None
     """
     if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # set before it was loaded, as the command line does
-        return nullcontext()
+        yield
+        return
     from threadpoolctl import threadpool_limits
 
-    return threadpool_limits(1, "blas")
+    with threadpool_limits(1, "blas"):
+        yield

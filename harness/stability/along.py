@@ -33,6 +33,7 @@ from ..program.motion_problem import MotionProblem, require_analytic
 from ..schema import MATRIX, PAIRS, VECTOR, lists_of
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
+from ..simulation.evaluation import one_blas_thread
 from ..simulation.matrices import Matrix, Vector
 from ..simulation.nominal import nominal_of
 from ..simulation.request import SimulationRequest
@@ -197,6 +198,7 @@ class LinearizedMotion(Documented, Shown):
         return np.array([each.output_row(output) @ phi for each, phi in zip(self.at, self.transition, strict=True)])
 
 
+@one_blas_thread()
 def linearize_along(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
     """Linearise along a motion.
 

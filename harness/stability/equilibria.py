@@ -28,6 +28,7 @@ from ..program.motion_problem import MotionProblem, require_analytic, require_la
 from ..schema import PAIRS
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
+from ..simulation.evaluation import one_blas_thread
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
@@ -147,6 +148,7 @@ class Equilibria(Documented, Shown):
         return iter(self.found)
 
 
+@one_blas_thread()
 def find_equilibria(
     problem: MotionProblem,
     equations: LinearEquations,

@@ -35,6 +35,7 @@ from ..program.sign_pattern import drawing_with_values
 from ..schema import MATRIX, PAIRS, VECTOR, Names, lists_of
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
+from ..simulation.evaluation import one_blas_thread
 from ..simulation.hybrid_motion import EventOutcome
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
@@ -287,6 +288,7 @@ class Linearization(Documented, Shown):
         return [self.outputs.index(name) for name in wanted]
 
 
+@one_blas_thread()
 def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction | None = None) -> Linearization:
     """Linearise a motion at a given time.
 
