@@ -182,6 +182,7 @@ def _derived(
     from ..source import Source
 
     source, digits = Source(scene_file, limits), _digits_of(wanted.precision)
+    request = replace(request, derivatives=bool(wanted.sensitivities))
     if equilibrium is not None:
         from ..scene import Scene
         from ..stability.start import started_at_equilibrium

@@ -106,7 +106,7 @@ def _programs(description: Description) -> dict[SceneAndSolve, Question]:
 def _program(description: Description, scene: DescribedScene | None, solve: Solve) -> Question:
     name = scene and scene.name
     if is_closed(description, scene):
-        return Question(Document.MOTION_PROBLEM, (name, solve, WORKING_DIGITS, ()))
+        return Question(Document.MOTION_PROBLEM, (name, solve, WORKING_DIGITS, (), ()))
     return Question(Document.PROGRAM, (name, solve))
 
 

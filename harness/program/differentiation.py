@@ -3,10 +3,12 @@
 Forward differentiation, assignment by assignment (Griewank & Walther, Evaluating Derivatives, 2nd ed., section 3.2).
 """
 
-from collections.abc import Callable, Iterable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
+from itertools import islice
 
 from .arithmetic import Arithmetic, run_program
 from .motion_program import (
@@ -64,6 +66,11 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
     found = run_program(
         program, {name: _Dual(Name(name), seeds.get(name, {})) for name in program.inputs}, _duals(tape)
     )
+    return _written(program, tape, found, seeds)
+
+
+def _written(program: Program, tape: "_Tape", found: Mapping[str, "_Dual"], seeds: Seeds) -> Program:
+    """Return the program on a tape. Names in the seeds are inputs behind the others."""
     directions = dict.fromkeys(direction for each in seeds.values() for direction in each)
     named = (atom.text for each in seeds.values() for atom in each.values() if isinstance(atom, Name))
     derivatives = {
@@ -77,6 +84,66 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
         assignments=tuple((name.text, call) for call, name in tape.known.items()),
         outputs={output: dual.value for output, dual in found.items()} | derivatives,
     )
+
+
+def solution_differentiated(response: Program, matrices: Program, seeds: Seeds) -> Program:
+    """Return a program of accelerations and multipliers with their derivatives.
+
+    The derivatives solve the equations of motion with other right sides,
+
+        A a' - J^T lambda' = h' - A' a + J'^T lambda,    J a' = -(c' + J' a),
+
+    so the factors are not differentiated (M. Giles, Collected matrix derivative results for forward and reverse mode
+    algorithmic differentiation, 2008).
+
+    Parameters
+    ----------
+    response : Program
+        Its inputs are those of the matrices, the n changes of h and the g changes of c, these in order. Its outputs are
+        the accelerations, the multipliers, then the changes of both.
+    matrices : Program
+        With the outputs ``A[s,k]``, ``h[s]``, ``J[b,s]``, ``c[b]``.
+    seeds : mapping
+        As for `differentiated`.
+
+    Returns
+    -------
+    Program
+        As `differentiated` returns it.
+    """
+    tape = _Tape({*response.inputs, *(name for each in (response, matrices) for name, _ in each.assignments)})
+    arithmetic, changes = _duals(tape), [name for name in response.inputs if name not in matrices.inputs]
+    here = {name: _Dual(Name(name)) for name in matrices.inputs}
+    solved = run_program(response, here | dict.fromkeys(changes, _Dual(ZERO)), arithmetic)
+    solution = dict(islice(solved.items(), len(changes)))
+    moving = {name: _Dual(Name(name), seeds.get(name, {})) for name in matrices.inputs}
+    sides = _right_sides(tape, run_program(matrices, moving, arithmetic), [dual.value for dual in solution.values()])
+    moved = run_program(response, here | dict(zip(changes, sides, strict=True)), arithmetic)
+    rates = [dual.rates for dual in islice(moved.values(), len(changes), None)]
+    found = {name: _Dual(dual.value, own) for (name, dual), own in zip(solution.items(), rates, strict=True)}
+    return _written(matrices, tape, found, seeds)
+
+
+def _right_sides(tape: "_Tape", terms: Mapping[str, "_Dual"], solution: Sequence[Atom]) -> list["_Dual"]:
+    """Return h' - A' a + J'^T lambda and c' + J' a, as changes of zero."""
+    n = sum(name.startswith("h[") for name in terms)
+    rows: list[list[_Dual]] = [[_Dual(ZERO)] for _ in solution]
+
+    def add(row: int, dual: _Dual, weight: Atom) -> None:
+        rows[row].append(_Dual(ZERO, _scaled(tape, dual, lambda: weight)))
+
+    for name, dual in terms.items():
+        match [int(part) - 1 if part.isdigit() else part for part in re.findall(r"\w+", name)]:
+            case "A", s, k:
+                add(s, dual, tape(Operation.NEGATE, solution[k]))
+            case "h", s:
+                add(s, dual, ONE)
+            case "J", beta, s:
+                add(s, dual, solution[n + beta])
+                add(n + beta, dual, solution[s])
+            case "c", beta:
+                add(n + beta, dual, ONE)
+    return [_sum(tape, *row) for row in rows]
 
 
 @dataclass(frozen=True)

@@ -198,6 +198,12 @@ class MotionProblem:
         "Program of the multipliers, too: energy, the energy function, and power, its time derivative along the motion."
     )
     drawing: Drawing | None = entry("Drawing of the system, or null.")
+    response: Program | None = entry(
+        "Program, where derivatives of the motion are requested: ddot(q) and the multipliers, then change_of_a[s] and "
+        "change_of_lambda[b], their changes with h and c: A a - J^T lambda = h, J a = -c with the last n + g inputs in "
+        "place of h and c. null with an obstruction, or where forces contain multipliers.",
+        None,
+    )
     law_end: NumberText | None = entry(
         "The last time at which the drives have values, where tables or special functions give them; null where "
         "nothing ends them.",
@@ -489,7 +495,8 @@ def problem_document(
     HolonomError
         As `motion_problem`.
     """
-    asked = (request.scene, request.solve, digits, tuple(open_parameters))
+    further = ("response",) if request.derivatives else ()
+    asked = (request.scene, request.solve, digits, tuple(open_parameters), further)
     return ask(Document.MOTION_PROBLEM, file, *asked, settings=request.settings, limits=limits)
 
 

@@ -30,6 +30,7 @@ class Request:
     )
     # numbers in Maxima's notation, for what the file leaves open and for parameters
     settings: Mapping[str, str] = field(default_factory=dict)
+    derivatives: bool = False  # whether derivatives of the motion are requested
 
 
 def read_settings(texts: Iterable[str]) -> dict[str, str]:

@@ -6,6 +6,7 @@ derived with the numbers in it.
 """
 
 from collections.abc import Collection, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from ..documents import NAME
@@ -23,7 +24,7 @@ class Derivations:
         self._opened: dict[tuple[object, ...], list[tuple[Mapping[str, str], MotionProblem]]] = {}
         self._closed: dict[tuple[object, ...], MotionProblem] = {}
 
-    def motion(self, request: Request, digits: int = DOUBLE_DIGITS, also_open: Collection[str] = ()) -> MotionProblem:
+    def motion(self, request: Request, digits: int = DOUBLE_DIGITS, directions: Collection[str] = ()) -> MotionProblem:
         """Return the motion that a request asks for.
 
         Its open parameters, if it has any, have the values of the settings.
@@ -34,8 +35,8 @@ class Derivations:
             Scene, solve and settings.
         digits : int
             Decimal digits of the initial values.
-        also_open : collection of str
-            Further parameters to leave open, with the scene's values.
+        directions : collection of str
+            Names by which derivatives are requested. Parameters among them stay open, with the scene's values.
 
         Returns
         -------
@@ -46,19 +47,20 @@ class Derivations:
         HolonomError
             As `motion_problem`.
         """
-        names = open_names(request, digits, also_open)
+        names = open_names(request, digits, directions)
+        request = replace(request, derivatives=request.derivatives or bool(directions))
         opened = self._at_settings(request, names) if names else None
         return self._with_numbers(request, digits) if opened is None else opened
 
     def _with_numbers(self, request: Request, digits: int) -> MotionProblem:
-        key = (request.scene, request.solve, digits, *sorted(request.settings.items()))
+        key = (request.scene, request.solve, request.derivatives, digits, *sorted(request.settings.items()))
         if key not in self._closed:
             self._closed[key] = motion_problem(self._source, request, self._source.limits, digits)
         return self._closed[key]
 
     def _at_settings(self, request: Request, names: tuple[str, ...]) -> MotionProblem | None:
         """Return the motion with open parameters set, or None if numbers are needed."""
-        known = self._opened.setdefault((request.scene, request.solve, names), [])
+        known = self._opened.setdefault((request.scene, request.solve, request.derivatives, names), [])
         for settings, problem in known:
             fixed = [name for name in names if not (name in problem.parameters and name in request.settings)]
             if all(settings.get(name) == request.settings.get(name) for name in fixed):

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.differentiation import along, derivative_name, differentiated
+from ..program.differentiation import along, derivative_name, differentiated, solution_differentiated
 from ..program.heyoka_function import heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Name, Program
@@ -91,9 +91,15 @@ class VariationalEquations:
         return {name: float(move) for name, move in zip(names, found, strict=True) if move > 0}
 
     def _differentiated(self) -> Program:
+        """Return the accelerations and their derivatives, in the fewest operations."""
         own = {name: {name: Name(seed)} for name, seed in self._seeds.items()}
-        plain = computing(self.problem.motion, [f"ddot({q})" for q in self.problem.coordinates])
-        return differentiated(plain, along(self.problem.state, self.directions) | own)
+        problem, seeds = self.problem, along(self.problem.state, self.directions) | own
+        accelerations = [f"ddot({q})" for q in problem.coordinates]
+        plain = differentiated(computing(problem.motion, accelerations), seeds)
+        if problem.response is None:
+            return plain
+        solved = solution_differentiated(problem.response, problem.matrices, seeds)
+        return min(plain, computing(solved, plain.outputs), key=lambda each: each.operations)
 
     def equations(self) -> Equations:
         """Return heyoka's equations of the state and its derivatives.
@@ -177,7 +183,8 @@ class VariationalEquations:
         if not self.problem.multipliers:
             return 0.0
         jacobian, sizes = np.abs(self._matrices(t, state).jacobian), self.units.state[:, None]
-        farthest = np.maximum(NO_MOVE, np.max(np.abs(moves) / sizes, axis=0))
+        least = NO_MOVE * largest(state / self.units.state)
+        farthest = np.maximum(least, np.max(np.abs(moves) / sizes, axis=0))
         moving = np.split(sizes * farthest, 2)  # if all values move as far as one does
         missed = np.abs(self.constraints(t, state, moves))
         return float(np.max(missed / or_one(jacobian @ np.array(moving) + missed), initial=0.0))

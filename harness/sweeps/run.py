@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from importlib.metadata import version
 from pathlib import Path
@@ -140,7 +140,8 @@ def run_sweep(
     require_address(wanted.scheduler)
     checked_tolerance(wanted.tol, read_precision("double"))
     source = source_of(file, limits)
-    text = _derived(source, request, wanted.axes)
+    kinds = {output.kind for output in wanted.outputs}
+    text = _derived(source, replace(request, derivatives=Kind.DERIVATIVE in kinds), wanted.axes)
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
     plan = Plan(problem, wanted.axes, wanted.outputs, wanted.tol, wanted.until, wanted.stabilization)
@@ -175,7 +176,7 @@ def _derived(source: Source, request: Request, axes: Axes) -> str:
             raise
         middle = axes.numbers(axes.rows // 2, axes.rows // 2 + 1)[:, 0]
         numbers = {name: str(Fraction(float(x))) for name, x in zip(axes.names, middle, strict=True)}
-        given = Request(request.scene, request.solve, {**request.settings, **numbers})
+        given = replace(request, settings={**request.settings, **numbers})
         try:
             return problem_document(source, given, source.limits, DOUBLE_DIGITS, axes.names)
         except HolonomError:

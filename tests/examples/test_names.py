@@ -32,7 +32,7 @@ WRITERS = (
     "lambda([it], write_program(it, 'pulled, 'orthogonal))",
     "lambda([it], write_effects(it, 'fling, 'direct))",
     "lambda([it], write_motion_series(it, 'fling, 6, 'exact, false))",
-    "lambda([it], write_motion_problem(it, 'pulled, 'direct, 16, []))",
+    "lambda([it], write_motion_problem(it, 'pulled, 'direct, 16, [], ['response]))",
     "lambda([it], write_free_motion(it, 'fling, 6))",
 )
 

@@ -1,14 +1,19 @@
-"""Derivatives of programs, against differences in 40 digits of the same program."""
+"""Derivatives of programs, against differences in 40 digits of the same program; solutions against `differentiated`."""
 
 from fractions import Fraction
+from pathlib import Path
 from random import Random
 
 import mpmath
 import pytest
 
 from holonom.program.arithmetic import Arithmetic, run_program
-from holonom.program.differentiation import along, derivative_name, differentiated
+from holonom.program.differentiation import along, derivative_name, differentiated, solution_differentiated
+from holonom.program.motion_problem import motion_problem
 from holonom.program.motion_program import CALLED, Call, Constant, Name, Operation, Program
+from holonom.program.request import Request
+from holonom.program.sign_pattern import at_start
+from holonom.sandbox import Limits
 
 POINT = {"x": Fraction(3, 7), "y": Fraction(5, 9), "t": Fraction(1, 3)}
 ABOVE_ONE = {Operation.ARCOSH}
@@ -92,3 +97,45 @@ def test_what_does_not_move_costs_nothing():
     program = program_of(Call(Operation.SIN, (Name("y"),)), Call(Operation.MULTIPLY, (Name("w0"), Name("x"))))
     found = differentiated(program, {"x": {"x": Fraction(1)}})
     assert found.operations == program.operations
+
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SYSTEMS = {  # under a singular mass matrix, servo-constraints, repeated constraints, a law in parts
+    "heavy_top.mac": ("m", "I1"),
+    "level_load.mac": ("m", "g"),
+    "hard/repeated_constraint.mac": ("m", "l"),
+    "hoist.mac": ("m", "g"),
+    "pendulum.mac": ("m", "g"),
+    "satellite.mac": ("M", "m"),
+    "overhead_crane.mac": ("m", "g"),
+    "linkage.mac": ("m", "g"),
+}
+QUICK = ("heavy_top.mac", "level_load.mac", "hard/repeated_constraint.mac", "hoist.mac")
+
+
+@pytest.mark.parametrize(
+    "file", [*QUICK, *(pytest.param(each, marks=pytest.mark.long) for each in SYSTEMS if each not in QUICK)]
+)
+def test_derivatives_of_a_solution_are_those_of_its_program(file):
+    names = SYSTEMS[file]
+    problem = at_start(motion_problem(EXAMPLES / file, Request(derivatives=True), Limits(), open_parameters=names))
+    directions = *(name for name in names if name in problem.parameters), *problem.state[::5]
+    own = {name: {name: Fraction(1)} for name in problem.parameters}
+    seeds = along(problem.state, directions) | own
+    plain = differentiated(problem.motion, seeds)
+    solved = solution_differentiated(problem.response, problem.matrices, seeds)
+    assert set(plain.outputs) >= set(solved.outputs)
+    random = Random(file)
+    inputs = {name: NUMBERS.number(Fraction(random.randint(20, 40), 31)) for name in plain.inputs}
+    values, truth = (run_program(program, inputs, NUMBERS) for program in (solved, plain))
+    for name, value in values.items():
+        assert abs(value - truth[name]) <= 1e-20 * max(1, abs(truth[name])), name
+    assert any(values[derivative_name(f"ddot({q})", k)] for q in problem.coordinates for k in directions)
+
+
+def test_a_factored_matrix_is_not_differentiated():
+    problem = at_start(motion_problem(EXAMPLES / "heavy_top.mac", Request(derivatives=True), Limits()))
+    seeds = along(problem.state, problem.state)
+    plain = differentiated(problem.motion, seeds)
+    solved = solution_differentiated(problem.response, problem.matrices, seeds)
+    assert solved.operations < 0.6 * plain.operations
