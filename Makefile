@@ -86,11 +86,12 @@ bench: setup ## Time the motion program, power series, simulations and sweeps ag
 	$(BIN)/python tests/benchmarks/series.py build/benchmarks
 	$(BIN)/python tests/benchmarks/simulation.py build/benchmarks
 	$(BIN)/python tests/benchmarks/sweep.py build/benchmarks
+	$(BIN)/python tests/benchmarks/sensitivities.py build/benchmarks
 	cp build/benchmarks/chain.svg build/benchmarks/chain.txt tests/benchmarks/
 	cp build/benchmarks/size.txt build/benchmarks/ring.txt build/benchmarks/tree.txt build/benchmarks/commands.txt tests/benchmarks/
 	cp build/benchmarks/series.svg build/benchmarks/series.txt tests/benchmarks/
 	cp build/benchmarks/simulation.svg build/benchmarks/simulation.txt tests/benchmarks/
-	cp build/benchmarks/sweep.txt tests/benchmarks/
+	cp build/benchmarks/sweep.txt build/benchmarks/sensitivities.txt tests/benchmarks/
 
 pictures: setup ## Draw the README's pictures and run the notebooks again
 	$(BIN)/holonom errata --force --svg examples/paper/errata.svg > /dev/null
