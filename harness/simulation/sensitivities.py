@@ -55,6 +55,33 @@ class _Segment(NamedTuple):
     moves: Callable[[Numbers], Numbers]  # takes times, shape (k,), to derivatives of the state, shape (2n, p, k)
 
 
+class _Polynomials:
+    """Taylor polynomials of steps, recorded by heyoka's callback.
+
+    heyoka's continuous output compiles a function at each call, which takes as long as a hundred steps.
+    """
+
+    def __init__(self, first: int) -> None:
+        self._first = first  # row that is recorded first
+        self._steps: list[tuple[float, float, Numbers]] = []
+
+    def __call__(self, integrator: Any) -> bool:
+        self._steps.append((integrator.time, integrator.last_h, integrator.tc[self._first :].copy()))
+        return True
+
+    def __len__(self) -> int:
+        return len(self._steps)
+
+    def at(self, times: Numbers) -> Numbers:
+        """Return the recorded rows at times, shape (rows, k)."""
+        ends, lengths, coefficients = (np.array(each) for each in zip(*self._steps, strict=True))
+        place = np.minimum(np.searchsorted(ends, times), len(ends) - 1)
+        elapsed, found = (times - (ends - lengths)[place])[:, None], 0.0
+        for column in np.moveaxis(coefficients[place], 2, 0)[::-1]:
+            found = found * elapsed + column
+        return found.T
+
+
 class _Zero(NamedTuple):
     """The zero of an output of one of a motion's programs."""
 
@@ -103,7 +130,8 @@ class _ModeVariation:
         integrator.time = start / unit
         integrator.state[:] = np.concatenate([scaled, (moves / rows / units).ravel()])
         integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]
-        *_, steps, between, _ = integrator.propagate_until(end / unit, c_output=True)
+        steps = _Polynomials(len(state))
+        integrator.propagate_until(end / unit, write_tc=True, callback=steps)
         if integrator.time != end / unit or not np.isfinite(integrator.state).all():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
@@ -111,16 +139,16 @@ class _ModeVariation:
             )
         reached, grown = np.split(integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
-        if steps > 1 and start < half < end and np.max(np.abs(grown)) > largest(scaled, reached):
+        if len(steps) > 1 and start < half < end and np.max(np.abs(grown)) > largest(scaled, reached):
             first, *there = self.integrate(start, state, moves, half, left)
             second, *there = self.integrate(half, *there, end, left)
             return first + second, *there
 
         def derivatives(times: Numbers) -> Numbers:
-            found = np.reshape(between(times / unit).T[len(state) :], (*moves.shape, len(times)))
+            found = np.reshape(steps.at(times / unit), (*moves.shape, len(times)))
             return (rows * units)[:, :, None] * found
 
-        self._compile_if_worthwhile(steps * left / (end - start))
+        self._compile_if_worthwhile(len(steps) * left / (end - start))
         there = sizes * reached, rows * units * grown.reshape(moves.shape)
         if self.variation.defect(end, *there) > DISTANCE:
             raise HolonomError(

@@ -1,4 +1,4 @@
-"""`make bench`: what derivatives of a motion take, in terms of the motion alone, beside the bar for it.
+"""`make bench`: what derivatives of a motion take, in terms of the motion alone, with its bar.
 
     python tests/benchmarks/sensitivities.py build/benchmarks
 
