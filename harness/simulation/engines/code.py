@@ -8,8 +8,8 @@ to the end of their time spans. 16, 212 and 438 operations:
     compact    0.047  0.18   0.5       0.24  0.61  2.4
     unrolled   0.080  2.4    11        0.17  0.46  1.9
 
-Compact code is compiled at level 1: relative to level 3, this takes 0.94, 0.71 and 0.72 of the time, runs alike and gives
-the same digits.
+Compact code is compiled at level 1, in 0.94, 0.71 and 0.72 of the time that level 3 takes. It runs alike and gives the
+same digits.
 
 In quadruple precision and beyond, functions do the arithmetic, and all three run alike. The time of a run is
 predicted from these times, by steps and operations, never measured: the choice must not depend on the machine's load.
