@@ -31,6 +31,7 @@ from ..program.precision import read_precision
 from ..program.sign_pattern import SLIDING, switching_function
 from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
+from .engines.taylor import states_of
 from .evaluation import Numbers
 from .impulses import moves_behind_impulse
 from .initial_tangents import initial_tangents
@@ -76,10 +77,7 @@ class _Polynomials:
         """Return the recorded rows at times, shape (rows, k)."""
         ends, lengths, coefficients = (np.array(each) for each in zip(*self._steps, strict=True))
         place = np.minimum(np.searchsorted(ends, times), len(ends) - 1)
-        elapsed, found = (times - (ends - lengths)[place])[:, None], 0.0
-        for column in np.moveaxis(coefficients[place], 2, 0)[::-1]:
-            found = found * elapsed + column
-        return found.T
+        return states_of((ends - lengths)[place], 0.0, 1.0, coefficients[place].T, times)
 
 
 class _Zero(NamedTuple):

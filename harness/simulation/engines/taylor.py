@@ -327,15 +327,15 @@ class TaylorEngine(ProgramEngine):
 
 
 def states_of(begun: Any, rest: Any, unit: Any, coefficients: Numbers, times: Numbers) -> Numbers:
-    """Return states at times of a step by polynomials of the time.
+    """Return states at times of a step, or of a step each, by Taylor polynomials.
 
     Parameters
     ----------
-    begun, rest : number
+    begun, rest : number, or ndarray of shape (k,)
         Beginning of the step: their sum, in twice the digits of a number.
     unit : number
         Unit of the time in the polynomials.
-    coefficients : ndarray, shape (order + 1, 2n, 1)
+    coefficients : ndarray, shape (order + 1, 2n, 1) or (order + 1, 2n, k)
         Those of powers of the time since the beginning.
     times : ndarray, shape (k,)
         Times of the step.
