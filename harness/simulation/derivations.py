@@ -48,7 +48,7 @@ class Derivations:
             As `motion_problem`.
         """
         names = open_names(request, digits, directions)
-        request = replace(request, derivatives=request.derivatives or bool(directions))
+        request = replace(request, derivatives=bool(directions))
         opened = self._at_settings(request, names) if names else None
         return self._with_numbers(request, digits) if opened is None else opened
 
