@@ -13,6 +13,7 @@ working directory; another Lisp than GCL saves none."
           (mfuncall '$load (concatenate 'string library "/holonom.mac"))
           (mfuncall '$load "stringproc")      ; which Maxima looks for and interprets when its first function is called
           (setf (symbol-function 'cl-info::load-primary-index) #'(lambda () nil)) ; it is in the image, too
+          (setf (symbol-function 'si::get-path) #'identity) ; GCL asks three shells where programs are when it starts
           (mapc #'load jobs)
           (ignore-errors (compile-in-two-files (directory (concatenate 'string library "/*/*.lisp"))
                                                (append (directory (concatenate 'string library "/*.lisp")) jobs)))

@@ -50,7 +50,7 @@ def made(first_made, cache) -> Path:
 @pytest.mark.parametrize(
     ("document", "example", "arguments", "settings"),
     [
-        (Document.RECORD, "paper/paper.mac", (None,), {}),
+        (Document.RECORD, "paper/paper.mac", (), {}),
         pytest.param(Document.FREE_MOTION, "pendulum.mac", (None, None), {}, marks=pytest.mark.long),
         # calls in GCL take 63 arguments
         pytest.param(Document.PROGRAM, "chain.mac", (None, "direct"), {"N": "70"}, marks=pytest.mark.long),
@@ -60,6 +60,15 @@ def test_with_the_image_and_without_the_documents_are_the_same(monkeypatch, docu
     with_image = ask(document, EXAMPLES / example, *arguments, settings=settings)
     monkeypatch.setattr(maxima, "preloaded_image", lambda *_: None)
     assert ask(document, EXAMPLES / example, *arguments, settings=settings) == with_image
+
+
+def test_a_scene_that_loads_the_library_in_the_image_runs_its_compiled_functions(tmp_path):
+    if maxima._image(shutil.which("maxima")) is None:
+        pytest.skip("this Maxima's Lisp cannot save itself")
+    file = tmp_path / "scene.mac"
+    compiled = r"?compiled\-function\-p(?symbol\-function(?read\-name))"
+    file.write_text(f'load("holonom.mac")$ write_it(file) := with_stdout(file, print({compiled}))$')
+    assert maxima.run_batch(file, "write_it") == "true \n"
 
 
 @pytest.mark.long
