@@ -266,6 +266,7 @@ def _import_readers(own_process: bool) -> None:
         from ..display import motion, progress  # noqa: F401
         from ..simulation import output, simulate  # noqa: F401
         from ..simulation.engines import runge_kutta, taylor  # noqa: F401
+        from . import console  # noqa: F401
 
 
 def _import_heyoka_alone() -> None:

@@ -4,12 +4,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import isnan
 from typing import TYPE_CHECKING
 
-import mpmath
-
 from ..hidden import visible_line
 from .heading import heading
 
 if TYPE_CHECKING:
+    import mpmath
     from rich.console import Console
 
     from ..series.power_series import Continuation, MotionSeries, Values
@@ -75,6 +74,7 @@ def _show_coefficients(console: "Console", title: str, columns: Mapping[str, Seq
 
 
 def _show_continuation(console: "Console", continuation: "Continuation") -> None:
+    import mpmath
     from rich.table import Table
 
     names = [*continuation.coordinates, *continuation.velocities]
@@ -104,7 +104,9 @@ def short_number(text: str) -> str:
     return text if len(text) <= SHOWN_TEXT and "." not in text else _rounded(number(text))
 
 
-def _rounded(value: mpmath.mpf) -> str:
+def _rounded(value: "mpmath.mpf") -> str:
+    import mpmath
+
     return mpmath.nstr(value, SHOWN_DIGITS)
 
 

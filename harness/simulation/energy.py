@@ -10,7 +10,6 @@ from functools import cache, cached_property
 from itertools import pairwise
 from typing import Any
 
-import mpmath
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
@@ -248,8 +247,9 @@ def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
 
     The formula is 25.4.29 of Abramowitz & Stegun.
     """
+    import mpmath
 
-    def with_slope(x: mpmath.mpf) -> tuple[mpmath.mpf, mpmath.mpf]:
+    def with_slope(x: Any) -> tuple[Any, Any]:
         before, value = mpmath.mpf(1), x
         for k in range(2, n + 1):
             before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
