@@ -135,20 +135,21 @@ class Draws:
     def _symbols_of(self, branch: int) -> list[sp.Symbol]:
         return sorted((x for x in self.branches[branch].argument.free_symbols if x.name in self.names), key=str)
 
-    def _looked_at(self, point: Point) -> list[Number | None]:
+    def _looked_at(self, point: Point) -> list[mp.mpf | None]:
         with mp.workdps(LOOKING_DIGITS):
-            return self._sides.at({x: mp.mpf(number.p) / number.q for x, number in point.items()})
+            found = self._sides.at({x: mp.mpf(number.p) / number.q for x, number in point.items()})
+        return [*map(_real, found)]
 
     def _outside(self, point: Point) -> list[int]:
         found = self._looked_at(point)
-        return [i for i in self._wanted if found[i] is None or mp.im(found[i]) or found[i] < 0]
+        return [i for i in self._wanted if found[i] is None or found[i] < 0]
 
     def _note(self, point: Point) -> bool:
         """Return True if the point is the first on a side or combination of sides."""
         sides = [
             (i, 1 if value > 0 else -1)
             for i, value in enumerate(self._looked_at(point))
-            if value is not None and not mp.im(value) and value and self.branches[i].has_sides
+            if value and self.branches[i].has_sides
         ]
         most = 3 if len(self.branches) <= TRIPLES else 2 if len(self.branches) <= PAIRS else 1
         found = {each for count in range(1, most + 1) for each in combinations(sides, count)}
@@ -185,6 +186,10 @@ def _exact(number: mp.mpf) -> sp.Rational:
     return whole * sp.Integer(2) ** exponent
 
 
+def _real(number: Number | None) -> mp.mpf | None:
+    return None if number is None or mp.im(number) else mp.re(number)
+
+
 def _solved(residual: Steps, symbol: sp.Symbol, point: Point) -> mp.mpf | None:
     """Return the zero of the residual as a function of the symbol.
 
@@ -192,14 +197,14 @@ def _solved(residual: Steps, symbol: sp.Symbol, point: Point) -> mp.mpf | None:
     """
     values = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
 
-    def at(number: mp.mpf) -> Number | None:
-        return residual.at({**values, symbol: number})[0]
+    def at(number: mp.mpf) -> mp.mpf | None:
+        return _real(residual.at({**values, symbol: number})[0])
 
     before, now = values[symbol], values[symbol] * mp.mpf("1.01")
     left = at(before)
     for _ in range(SECANTS):
         right = at(now)
-        if left is None or right is None or mp.im(right) or right == left:
+        if left is None or right is None or right == left:
             return now if right == 0 else None
         before, now, left = now, now - right * (now - before) / (right - left), right
         if abs(now - before) <= mp.mpf(10) ** -(LOOKING_DIGITS // 2) * abs(now):

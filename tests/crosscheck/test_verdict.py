@@ -36,6 +36,21 @@ def test_rounding_of_large_terms_that_cancel_was_a_disagreement() -> None:
     assert "1.0e-40" in found.detail
 
 
+@pytest.mark.parametrize("power", [sp.Rational(1, 3), sp.Rational(1, 2)])
+def test_rounding_that_shrinks_slowly_is_no_difference(power) -> None:
+    """A root of a rounding error gains a share of the digits only; it is no number, but no other points have it."""
+    angles = sp.asin(X / 3) + sp.acos(X / 3)
+    rounding = sp.Abs(2 * angles - sp.pi) ** power
+    found = verify(compared(rounding * (1 + sp.sign(X - sp.Rational(1, 2))), sp.Integer(0)), "seed")
+    assert found.verdict is Verdict.UNDECIDED
+
+
+def test_a_root_of_what_is_zero_up_to_rounding_was_an_internal_error() -> None:
+    """Real numbers among complex ones that were compared by size; of a square root of zero nothing is proved."""
+    hidden = 2 * sp.asin(X / 3) + 2 * sp.acos(X / 3) - sp.pi
+    assert verify(compared(sp.sqrt(hidden), sp.Integer(0)), "seed").verdict is not Verdict.PROVED
+
+
 def test_difference_beyond_double_precision_is_found() -> None:
     found = verify(compared(X + sp.Rational(1, 10**40), X), "seed")
     assert found.verdict is Verdict.DISAGREES
