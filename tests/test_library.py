@@ -1,5 +1,6 @@
 """The Maxima library as a whole: one namespace."""
 
+import json
 import re
 from collections import Counter
 from pathlib import Path
@@ -144,3 +145,28 @@ def test_the_files_of_the_paper_do_not_have_the_library_read_anew(tmp_path):
         write_marked(file) := write_json(json_list(lambda([x], x), [simplest(0)]), file)$
     """)
     assert "known by its mark" in run_batch(job, "write_marked")
+
+
+BINDING = """
+its_function(its_a, [its_b]) := block([its_c, its_d : 1, [its_e : 2]], its_g : its_free, [its_h, its_i] : [1, 2],
+  its_j[1] : 2, for its_k thru 2 do 0, for its_l in its_free do 0, lambda([its_m, [its_n]], 0),
+  makelist(its_free, its_o, its_free), sum(its_free, its_p, 1, 2), product(its_free, its_q, 1, 2),
+  lsum(its_free, its_r, its_free), create_list(its_free, its_s, its_free, its_t, its_free))$
+define(its_u(its_v), its_free)$
+its_w(its_x) ::= its_free$
+defstruct(its_y(its_field))$
+"""
+
+
+def test_what_the_library_binds_is_private_and_what_it_only_reads_is_not(tmp_path):
+    (tmp_path / "binding.mac").write_text(BINDING)
+    job = tmp_path / "job.mac"
+    job.write_text(f"""
+        load("{LIBRARY}/holonom.mac")$
+        load_library("{tmp_path}/", ["binding.mac"])$
+        open_namespace()$
+        write_private(file) := write_json(json_list(string, sublist(internal_names(),
+          lambda([name], is(ssearch("its_", string(name)) = 1)))), file)$
+    """)
+    names = {*re.findall(r"its_\w+", BINDING)} - {"its_free", "its_field"}
+    assert {*json.loads(run_batch(job, "write_private"))} == names

@@ -70,14 +70,6 @@ class CheckedScene:
         """Coordinates and velocities."""
         return (*self.system.coordinates, *self.system.velocities)
 
-    @property
-    def law(self) -> Mapping[str, sp.Expr]:
-        """The control law.
-
-        A switched law is the one that the record holds around the initial time.
-        """
-        return self.scene.control_law if self.scene.law_around_start else self.premises.control_law
-
     @cached_property
     def parameters(self) -> Definitions:
         """The values of the parameters."""
@@ -90,9 +82,12 @@ class CheckedScene:
 
     @cached_property
     def control_law(self) -> Definitions:
-        """Controls and their derivatives as functions of time, by the scene's law."""
+        """Controls and their derivatives as functions of time, by the scene's law.
+
+        It is the one in the record, which `differences` compares with the one that is stated.
+        """
         definitions: dict[sp.Symbol, sp.Expr] = {}
-        for name, law in self.law.items():
+        for name, law in self.scene.control_law.items():
             for symbol in history(sp.Symbol(name, real=True)):
                 definitions[symbol] = law
                 law = law.diff(self.system.time)

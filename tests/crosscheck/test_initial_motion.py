@@ -1,12 +1,14 @@
 """Every relation of a scene is compared with something: changed, left out, added or beyond its order, it is found."""
 
 import dataclasses
+from itertools import pairwise
 
 import pytest
+import sympy as sp
 
 from holonom.crosscheck.derivation import CheckedDerivation
 from holonom.crosscheck.independent import IndependentEquations
-from holonom.crosscheck.initial_motion import COMPARISONS, CheckedScene
+from holonom.crosscheck.initial_motion import COMPARISONS, CheckedScene, _without_closed_form
 from holonom.crosscheck.relations import NotComparable
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.system import described_system
@@ -101,3 +103,13 @@ def test_a_start_that_leaves_a_value_open_is_refused(checked):
     scene = dataclasses.replace(checked.scene, initial_state=short)
     with pytest.raises(NotComparable):
         COMPARISONS["initial_state"](dataclasses.replace(checked, scene=scene), state.relations)
+
+
+def test_four_values_together_or_two_not_linearly_may_have_no_closed_form():
+    """As many as the derivation may write as numbers (`is_brief_solution`), in whatever groups they share equations."""
+    x = sp.symbols("x:9", real=True)
+    groups = x[:3], x[3:7], x[7:]
+    equations = [sum(x[:2]), x[1] - x[2], *(a + b for a, b in pairwise(x[3:7])), x[7] * x[8]]
+    containing = {each: [e for e in equations if each in e.free_symbols] for each in x}
+    assert _without_closed_form({*x}, containing) == {*groups[1], *groups[2]}
+    assert _without_closed_form({*x[:6], x[8]}, containing) == set()

@@ -92,6 +92,18 @@ def test_a_rod_that_jams_names_the_paradox():
         scene.simulate(until=1)
 
 
+def test_an_end_that_friction_does_not_cause_names_no_paradox():
+    """Truth: z'' = 6 z^2 from 1 with the speed 2 is 1/(1 - t)^2; the block beside it slides as on any incline."""
+    text = (
+        INCLINE.replace("[x, y]", "[x, y, z]").replace("0]],", "0, 6*z^2]],").replace("dot(y)^2", "dot(y)^2 + dot(z)^2")
+    )
+    scene = of_text(text.replace("m = 2", "m = 1").replace("dot(x) = VELOCITY", "dot(x) = 9, z = 1, dot(z) = 2"))
+    with failing(ErrorKind.NO_WAY_ON) as ended:
+        scene.simulate(until=2)
+    assert float(ended.value.detail.split(",")[0]) == pytest.approx(1, abs=1e-3)
+    assert "Painleve" not in ended.value.detail
+
+
 def test_a_rod_with_less_friction_than_four_thirds_has_no_paradox():
     scene = of_text(ROD.replace("MU", "13/10").replace("PHI", "13/10"))
     assert scene.simulate(until=1, samples=2)["phi"][-1] < 1.3
