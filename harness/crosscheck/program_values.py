@@ -264,14 +264,12 @@ def with_signs(problem: MotionProblem, inputs: Values) -> Values:
 
 def _with_signs_of_reactions(problem: MotionProblem, inputs: Values) -> Values:
     """Return the inputs with the one sign pattern that agrees with its multipliers."""
-    names = {f"switch[{k}]": sign.name for k, sign in enumerate(problem.signs, 1) if sign.by is DependsOn.REACTION}
+    multipliers = {sign.of: sign.name for sign in problem.signs if sign.by is DependsOn.REACTION}
     consistent = []
-    for signs in product((mp.one, -mp.one), repeat=len(names)):
-        tried = inputs | {name: (sign,) for name, sign in zip(names.values(), signs, strict=True)}
-        switches = run(problem.switching, tried) if problem.reacting else {}
-        if problem.reacting and not switches["regular"][0] > 0:
-            raise IrregularPoint
-        if all(sign * switches[switch][0] > 0 for switch, sign in zip(names, signs, strict=True)):
+    for signs in product((mp.one, -mp.one), repeat=len(multipliers)):
+        tried = inputs | {name: (sign,) for name, sign in zip(multipliers.values(), signs, strict=True)}
+        found = run(problem.motion, tried) if multipliers else {}
+        if all(sign * found[multiplier][0] > 0 for multiplier, sign in zip(multipliers, signs, strict=True)):
             consistent.append(tried)
     if len(consistent) != 1:
         raise IrregularPoint

@@ -14,7 +14,6 @@ from .arithmetic import Arithmetic, run_program
 from .motion_program import (
     CALLED,
     Atom,
-    Call,
     Constant,
     Expression,
     Name,
@@ -22,7 +21,8 @@ from .motion_program import (
     Program,
     expression_of,
 )
-from .rewriting import ONE, ZERO, folded
+from .rewriting import ONE, ZERO
+from .tape import Tape
 
 Seeds = Mapping[str, Mapping[str, Atom]]
 TWO = Fraction(2)
@@ -62,14 +62,14 @@ def differentiated(program: Program, seeds: Seeds) -> Program:
         Outputs as before, then ``d(output, direction)`` for each output and direction. Zero is the number 0. A sign
         counts as constant.
     """
-    tape = _Tape({*program.inputs, *(name for name, _ in program.assignments)})
+    tape = Tape({*program.inputs, *(name for name, _ in program.assignments)})
     found = run_program(
         program, {name: _Dual(Name(name), seeds.get(name, {})) for name in program.inputs}, _duals(tape)
     )
     return _written(program, tape, found, seeds)
 
 
-def _written(program: Program, tape: "_Tape", found: Mapping[str, "_Dual"], seeds: Seeds) -> Program:
+def _written(program: Program, tape: Tape, found: Mapping[str, "_Dual"], seeds: Seeds) -> Program:
     """Return the program on a tape. Names in the seeds are inputs behind the others."""
     directions = dict.fromkeys(direction for each in seeds.values() for direction in each)
     named = (atom.text for each in seeds.values() for atom in each.values() if isinstance(atom, Name))
@@ -81,7 +81,7 @@ def _written(program: Program, tape: "_Tape", found: Mapping[str, "_Dual"], seed
     return replace(
         program,
         inputs=tuple(dict.fromkeys((*program.inputs, *named))),
-        assignments=tuple((name.text, call) for call, name in tape.known.items()),
+        assignments=tape.assignments,
         outputs={output: dual.value for output, dual in found.items()} | derivatives,
     )
 
@@ -111,7 +111,7 @@ def solution_differentiated(response: Program, matrices: Program, seeds: Seeds) 
     Program
         As `differentiated` returns it.
     """
-    tape = _Tape({*response.inputs, *(name for each in (response, matrices) for name, _ in each.assignments)})
+    tape = Tape({*response.inputs, *(name for each in (response, matrices) for name, _ in each.assignments)})
     arithmetic, changes = _duals(tape), [name for name in response.inputs if name not in matrices.inputs]
     here = {name: _Dual(Name(name)) for name in matrices.inputs}
     solved = run_program(response, here | dict.fromkeys(changes, _Dual(ZERO)), arithmetic)
@@ -124,7 +124,7 @@ def solution_differentiated(response: Program, matrices: Program, seeds: Seeds) 
     return _written(matrices, tape, found, seeds)
 
 
-def _right_sides(tape: "_Tape", terms: Mapping[str, "_Dual"], solution: Sequence[Atom]) -> list["_Dual"]:
+def _right_sides(tape: Tape, terms: Mapping[str, "_Dual"], solution: Sequence[Atom]) -> list["_Dual"]:
     """Return h' - A' a + J'^T lambda and c' + J' a, as changes of zero."""
     n = sum(name.startswith("h[") for name in terms)
     rows: list[list[_Dual]] = [[_Dual(ZERO)] for _ in solution]
@@ -154,44 +154,12 @@ class _Dual:
     rates: Mapping[str, Atom] = field(default_factory=dict)
 
 
-class _Tape:
-    """Assignments of the new program, each operation once."""
-
-    def __init__(self, taken: set[str]) -> None:
-        self.known: dict[Call, Name] = {}
-        self._symbol = "v"
-        while any(name.startswith(self._symbol) for name in taken):
-            self._symbol += "v"
-
-    def __call__(self, operation: Operation, *arguments: Atom) -> Atom:
-        match folded(operation, list(arguments)):
-            case Call() as call:
-                return self.known.setdefault(call, Name(f"{self._symbol}{len(self.known) + 1}"))
-            case atom:
-                return atom
-
-    def product(self, *factors: Atom) -> Atom:
-        return factors[0] if len(factors) == 1 else self(Operation.MULTIPLY, *factors)
-
-    def sum(self, terms: Iterable[Atom]) -> Atom:
-        first, *rest = terms
-        return self(Operation.ADD, first, *rest) if rest else first
-
-    def quotient(self, a: Atom, b: Atom) -> Atom:
-        return self(Operation.DIVIDE, a, b)
-
-    def power(self, base: Atom, exponent: Fraction) -> Atom:
-        if exponent in (ZERO, ONE):
-            return base if exponent else ONE
-        return self(Operation.POWER, base, exponent)
-
-
 SLOPES = {Operation(each.head): expression_of(each.slope) for each in CALLED if each.slope is not None}
 SLOPES |= {Operation.NEGATE: -ONE}
 """Derivatives of functions of one argument, of the argument x and of the value y."""
 
 
-def _duals(tape: _Tape) -> Arithmetic[_Dual]:
+def _duals(tape: Tape) -> Arithmetic[_Dual]:
     """Return the arithmetic of values with their derivatives."""
     special = {
         Operation.ADD: _sum,
@@ -210,11 +178,11 @@ def _duals(tape: _Tape) -> Arithmetic[_Dual]:
     )
 
 
-def _on(tape: _Tape, rule: Callable[..., _Dual]) -> Callable[..., _Dual]:
+def _on(tape: Tape, rule: Callable[..., _Dual]) -> Callable[..., _Dual]:
     return lambda *arguments: rule(tape, *arguments)
 
 
-def _function(tape: _Tape, operation: Operation, slope: Expression) -> Callable[[_Dual], _Dual]:
+def _function(tape: Tape, operation: Operation, slope: Expression) -> Callable[[_Dual], _Dual]:
     atoms = Arithmetic(
         number=lambda number: number,
         constants={each: each for each in Constant},
@@ -229,7 +197,7 @@ def _function(tape: _Tape, operation: Operation, slope: Expression) -> Callable[
     return dual
 
 
-def _scaled(tape: _Tape, x: _Dual, slope: Callable[[], Atom]) -> Mapping[str, Atom]:
+def _scaled(tape: Tape, x: _Dual, slope: Callable[[], Atom]) -> Mapping[str, Atom]:
     """Return the derivatives of a function of one value, given its slope.
 
     The slope is only evaluated if it is needed.
@@ -244,17 +212,17 @@ def _in_any(*duals: _Dual) -> Iterable[str]:
     return dict.fromkeys(direction for each in duals for direction in each.rates)
 
 
-def _sum(tape: _Tape, *terms: _Dual) -> _Dual:
+def _sum(tape: Tape, *terms: _Dual) -> _Dual:
     rates = {k: tape.sum(term.rates[k] for term in terms if k in term.rates) for k in _in_any(*terms)}
     return _Dual(tape.sum(term.value for term in terms), rates)
 
 
-def _difference(tape: _Tape, a: _Dual, b: _Dual) -> _Dual:
+def _difference(tape: Tape, a: _Dual, b: _Dual) -> _Dual:
     rates = {k: tape(Operation.SUBTRACT, a.rates.get(k, ZERO), b.rates.get(k, ZERO)) for k in _in_any(a, b)}
     return _Dual(tape(Operation.SUBTRACT, a.value, b.value), rates)
 
 
-def _product(tape: _Tape, *factors: _Dual) -> _Dual:
+def _product(tape: Tape, *factors: _Dual) -> _Dual:
     values = [factor.value for factor in factors]
     others = [values[:place] + values[place + 1 :] for place in range(len(values))]
     rates = {
@@ -268,7 +236,7 @@ def _product(tape: _Tape, *factors: _Dual) -> _Dual:
     return _Dual(tape.product(*values), rates)
 
 
-def _quotient(tape: _Tape, a: _Dual, b: _Dual) -> _Dual:
+def _quotient(tape: Tape, a: _Dual, b: _Dual) -> _Dual:
     value = tape(Operation.DIVIDE, a.value, b.value)
     rates = {}
     for k in _in_any(a, b):
@@ -279,12 +247,12 @@ def _quotient(tape: _Tape, a: _Dual, b: _Dual) -> _Dual:
     return _Dual(value, rates)
 
 
-def _power(tape: _Tape, base: _Dual, exponent: Fraction) -> _Dual:
+def _power(tape: Tape, base: _Dual, exponent: Fraction) -> _Dual:
     slope = _scaled(tape, base, lambda: tape.product(exponent, tape.power(base.value, exponent - 1)))
     return _Dual(tape.power(base.value, exponent), slope)
 
 
-def _general_power(tape: _Tape, base: _Dual, exponent: _Dual) -> _Dual:
+def _general_power(tape: Tape, base: _Dual, exponent: _Dual) -> _Dual:
     """Differentiate b^e: e b^(e - 1) b' + b^e ln(b) e'."""
     value = tape(Operation.POWER, base.value, exponent.value)
 
@@ -299,7 +267,7 @@ def _general_power(tape: _Tape, base: _Dual, exponent: _Dual) -> _Dual:
     return _Dual(value, {k: tape.sum(part[k] for part in parts if k in part) for k in _in_any(base, exponent)})
 
 
-def _angle(tape: _Tape, y: _Dual, x: _Dual) -> _Dual:
+def _angle(tape: Tape, y: _Dual, x: _Dual) -> _Dual:
     """Differentiate atan2(y, x): (x y' - y x')/(x^2 + y^2)."""
     square = tape.sum([tape.power(x.value, TWO), tape.power(y.value, TWO)])
     change = _difference(tape, *(

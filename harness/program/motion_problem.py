@@ -228,8 +228,8 @@ class MotionProblem:
     )
     switching: Program | None = entry(
         "Program: switch[i], the functions, with what decides how the motion passes their zeros, switch_rate[i], "
-        "drive[i] and grip[i], and momentum[s]; regular where forces contain multipliers, positive where they are "
-        "determined; null without signs and without such forces.",
+        "drive[i], size[i] and reaction[i] by amounts of friction, and momentum[s]; regular where other forces contain "
+        "multipliers, positive where these are unique; null without signs and without such forces.",
         None,
     )
     tables: tuple[Table, ...] = entry(

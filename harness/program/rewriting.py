@@ -43,6 +43,8 @@ def folded(operation: Operation, arguments: list[Expression]) -> Expression:
             return a / b
         case Operation.DIVIDE, [Fraction(numerator=0), _]:
             return ZERO
+        case Operation.DIVIDE, [a, Fraction(numerator=1, denominator=1)]:
+            return a
         case Operation.POWER, [Fraction() as a, Fraction(denominator=1) as n] if a or n >= 0:
             return a ** int(n)
         case _:
@@ -152,29 +154,31 @@ def with_names_for_numbers(expression: Expression, start: str) -> tuple[Expressi
 
 
 def preceded(first: Program, program: Program) -> Program:
-    """Return a program after another one that computes one of its inputs.
+    """Return a program after another one that computes some of its inputs.
 
     Both take the same inputs otherwise.
 
     Parameters
     ----------
     first : Program
-        Program with one output, which has the name of the input.
+        Program whose outputs have the names of these inputs, each that of the value itself.
     program : Program
 
     Returns
     -------
     Program
-        Program without this input.
+        Program without these inputs.
     """
-    (computed,) = first.outputs
+    computed = first.outputs.keys()
     taken = {name for name, _ in program.assignments} | set(program.inputs)
-    own = {name: untaken(f"{computed}_{name}", taken) for name, _ in first.assignments if name != computed}
+    own = {
+        name: untaken(f"{next(iter(computed))}_{name}", taken) for name, _ in first.assignments if name not in computed
+    }
     names: dict[str, Expression] = {name: Name(renamed) for name, renamed in own.items()}
     before = tuple((own.get(name, name), _substituted(value, names)) for name, value in first.assignments)
     return replace(
         program,
-        inputs=tuple(name for name in program.inputs if name != computed),
+        inputs=tuple(name for name in program.inputs if name not in computed),
         assignments=(*before, *program.assignments),
     )
 

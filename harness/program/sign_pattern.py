@@ -1,23 +1,22 @@
 """Programs of a motion with known signs, each a number or a sliding value.
 
 A motion that is not analytic everywhere has signs as inputs of its programs (`maxima/program/switching.mac`). While
-they stay the same, the motion is analytic, and its problem has the signs put in. The sign that makes a motion slide
-on its switching surface is the value -drive(0)/grip along the motion.
+they stay the same, the motion is analytic, and its problem has the signs put in. The signs that make a motion slide on
+switching surfaces are functions along the motion (`friction.py`).
 """
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 from typing import Any, TypeVar
 
 from .drawing import Drawing
+from .friction import SLIDING, Pattern, sliding_signs
 from .motion_problem import DependsOn, Ends, MotionProblem, Servo
 from .motion_program import Call, Name, Operation, Program
-from .rewriting import ZERO, computing, preceded, untaken, with_names_for_numbers, with_numbers
+from .rewriting import computing, preceded, untaken, with_names_for_numbers, with_numbers
 
-SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
-Pattern = Mapping[str, int | str]
 Part = TypeVar("Part", MotionProblem, Drawing, Ends, Servo)
 
 
@@ -29,7 +28,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     problem : MotionProblem
         The motion, with or without signs.
     pattern : mapping of str to int or str
-        1, -1 or `SLIDING` for each sign. At most one slides, among those of `holdable`.
+        1, -1 or `SLIDING` for each sign.
 
     Returns
     -------
@@ -64,9 +63,8 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     -------
     Program
     """
-    for name, sign in pattern.items():
-        if sign == SLIDING:
-            program = preceded(_holding(problem, name), program)
+    if SLIDING in pattern.values():
+        program = preceded(sliding_signs(problem, pattern), program)
     return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != SLIDING})
 
 
@@ -112,25 +110,6 @@ def drawing_with_values(problem: MotionProblem) -> Drawing:
     return replace(drawing, program=program_with_values(problem, drawing.program))
 
 
-def holdable(problem: MotionProblem, name: str) -> bool:
-    """Return True if a motion can slide on a sign's switching surface.
-
-    Then only forces contain the sign, and they are linear in it.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    name : str
-        One of its signs.
-
-    Returns
-    -------
-    bool
-    """
-    return problem.switching is not None and f"grip[{_index(problem, name)}]" in problem.switching.outputs
-
-
 def driven(problem: MotionProblem, name: str) -> bool:
     """Return True if the accelerations on both sides of a sign change are known.
 
@@ -165,40 +144,6 @@ def signs_of_reactions(problem: MotionProblem, pattern: Pattern) -> list[Pattern
     """
     names = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
     return [{**pattern, **dict(zip(names, signs, strict=True))} for signs in product((1, -1), repeat=len(names))]
-
-
-def uniqueness(problem: MotionProblem, pattern: Pattern) -> list[tuple[int, Program]]:
-    """Return functions that have a known sign if accelerations are unique.
-
-    The determinant D of `maxima/program/reacting_forces.mac` is positive for each pattern of the signs of multipliers,
-    with the largest friction to both sides if the motion slides on a switching surface. Then the drive falls
-    with the sliding sign. With one multiplier it does so between two values that the switching surfaces determine.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    pattern : Pattern
-        1, -1 or `SLIDING` for each sign.
-
-    Returns
-    -------
-    list of (int, Program)
-        Sign that the output must have, 1 or -1, and the program of one output.
-    """
-    if not problem.reacting:
-        return []
-    sliding = next((name for name, sign in pattern.items() if sign == SLIDING), None)
-    patterns = signs_of_reactions(problem, pattern)
-    regular = computing(problem.switching, {"regular"})
-    sides = [
-        pattern | ({sliding: to} if sliding else {}) for pattern in patterns for to in ((1, -1) if sliding else (1,))
-    ]
-    found = [(1, program_in(problem, regular, each)) for each in sides]
-    if sliding is None or len(patterns) <= 2:
-        return found
-    grip = computing(problem.switching, {f"grip[{_index(problem, sliding)}]"})
-    return found + [(-1, program_in(problem, grip, each)) for each in sides]
 
 
 def program_with_values(problem: MotionProblem, program: Program) -> Program:
@@ -367,13 +312,3 @@ def _with_programs(part: Part, changed: Callable[[Program], Program]) -> Part:
 
 def _index(problem: MotionProblem, name: str) -> int:
     return 1 + [sign.name for sign in problem.signs].index(name)
-
-
-def _holding(problem: MotionProblem, name: str) -> Program:
-    """Return the program of a sliding sign, with one output of that name."""
-    index = _index(problem, name)
-    program = with_numbers(computing(problem.switching, {f"drive[{index}]", f"grip[{index}]"}), {name: ZERO})
-    value = Call(Operation.DIVIDE, (
-        Call(Operation.NEGATE, (program.outputs[f"drive[{index}]"],)), program.outputs[f"grip[{index}]"],
-    ))  # fmt: skip
-    return replace(program, assignments=(*program.assignments, (name, value)), outputs={name: Name(name)})

@@ -17,35 +17,29 @@ the state, an impulse of a switching surface without a law of impact.
 
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
 from heapq import merge
 from itertools import groupby, islice
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple, NoReturn
 
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
+from ..program.friction import SLIDING, Pattern
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
-from ..program.sign_pattern import (
-    SLIDING,
-    Pattern,
-    driven,
-    holdable,
-    signs_of_reactions,
-    switching_function,
-    uniqueness,
-)
+from ..program.sign_pattern import driven, switching_function
 from .constraints.factorization import factored_constraints
 from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
 from .events import Events, values_in
+from .friction_modes import FrictionModes
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import UNIQUE, Mode
@@ -266,7 +260,9 @@ class HybridMotion:
         if self._to_come and self._precision.ratio(self._to_come[0]) == self.time != self._end:
             time_point = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
-            self._switch({**mode.pattern, **changes}, list(changes), self.time, self.state.copy(), ())
+            t, state = self.time, self.state.copy()
+            pattern = self._decided({**mode.pattern, **changes}, _sliding(mode.pattern), t, state)
+            self._switch(pattern, list(changes), t, state, ())
 
     def _steps(self, stop: Any) -> Iterator[Step]:
         """Yield steps of the mode. An error names the paradox that the motion comes near."""
@@ -280,9 +276,15 @@ class HybridMotion:
 
     def _nears_paradox(self) -> bool:
         """Return True if accelerations are hardly unique: multipliers grow."""
-        functions = [function for _, function in self._unique(self.mode.pattern)] if self.problem.reacting else []
-        at = self._inputs(self.time, self.state)
-        return any(abs(f(at)[0]) <= NEAR * self._changes(f, self.time, self.state) for f in functions)
+        if not self.problem.reacting:
+            return False
+        modes, t, state = self._modes_at(self.mode.pattern, ()), np.array([self.time]), self.state[:, None]
+
+        def determinants(times: Numbers, states: Numbers) -> Numbers:
+            return modes.determinants(self._inputs(times, states))
+
+        changes = first_order_changes(determinants, t, state, self.nominal)
+        return bool((np.abs(determinants(t, state)) <= NEAR * changes).any())
 
     # ---- releases ----
 
@@ -318,9 +320,15 @@ class HybridMotion:
             self._reject(t, NOT_UNIQUE)
         if self._left.get(name) == t or self._crowded(t):
             self._reject(t, translatable("%(sign)s changes its sign again and again", sign=self._signs[name].of))
-        pattern, sign = {**before, name: crossing.to}, self._signs[name]
-        if before[name] != SLIDING and sign.by not in (DependsOn.TIME, DependsOn.REACTION):
-            pattern[name] = self._sign_behind(sign, pattern, t, state, crossing.to)
+        sign, zeros = self._signs[name], [other for other in _sliding(before) if other != name]
+        pattern = {**before, name: crossing.to}
+        if before[name] != SLIDING and self._is_decided_by_accelerations(sign, pattern, t, state):
+            zeros = [
+                name,
+                *(other for other in self._signs if other != name and self._is_zero(other, pattern, t, state)),
+            ]
+        if sign.by is not DependsOn.REACTION:
+            pattern = self._decided(pattern, zeros, t, state)
         self._switch(pattern, [name], t, state, (name,))
 
     def _switch(self, pattern: Pattern, names: list[str], t: Any, state: Numbers, left: tuple[str, ...]) -> None:
@@ -328,8 +336,6 @@ class HybridMotion:
 
         `left` are the switching surfaces that the motion leaves.
         """
-        if self._signs[names[0]].by is not DependsOn.REACTION:
-            pattern = self._with_reactions(pattern, t, state)
         before, after = self.mode, self._mode_of(pattern, self._started_at(t, state))
         state = before.settled(t, state)  # without the drift, which takes no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
@@ -337,80 +343,71 @@ class HybridMotion:
         self._left |= dict.fromkeys(left, t)
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
-        if before.pattern[names[0]] == SLIDING:
-            outcome = EventOutcome.RELEASED
-        elif pattern[names[0]] == SLIDING:
-            outcome = EventOutcome.SLIDING
-        else:
-            change = self.nominal.share(as_floats(moved - state), as_floats(state))
-            outcome = EventOutcome.CROSSED if change <= CONTINUOUS else EventOutcome.IMPULSE
-        self.switchings += [Switching(float(t), self._signs[name].of, outcome) for name in names]
+        change = self.nominal.share(as_floats(moved - state), as_floats(state))
+        others = [name for name in pattern if name not in names and SLIDING in (pattern[name], before.pattern[name])]
+        for name in (*names, *(name for name in others if pattern[name] != before.pattern[name])):
+            if before.pattern[name] == SLIDING:
+                outcome = EventOutcome.RELEASED
+            elif pattern[name] == SLIDING:
+                outcome = EventOutcome.SLIDING
+            else:
+                outcome = EventOutcome.CROSSED if change <= CONTINUOUS else EventOutcome.IMPULSE
+            self.switchings.append(Switching(float(t), self._signs[name].of, outcome))
 
-    def _sign_behind(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers, to: int | None = None) -> int | str:
-        """Return the sign of a motion after a switching surface.
-
-        None for `to` where it starts on it.
-        """
+    def _is_decided_by_accelerations(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
+        """Return True if the accelerations on both sides decide about a sign that is zero."""
         if sign.by is DependsOn.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
-            return to or (1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1)
-        if driven(self.problem, sign.name):
-            return self._decided(sign, pattern, t, state)
-        if to is None:
-            self._reject(
-                t,
-                translatable(
-                    "%(sign)s is zero, and not in forces alone, which leaves open how the motion continues",
-                    sign=sign.of,
-                ),
-            )
-        return to
+            return False
+        return driven(self.problem, sign.name)
 
-    def _decided(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """Return the sign on a switching surface, decided by the motions on both sides."""
-        sides = (self._with_reactions({**pattern, sign.name: to}, t, state) for to in (1, -1))
-        above, below = (self._output("drive", sign, side, t, state) for side in sides)
-        if above * below > 0:
-            return 1 if above > 0 else -1
-        if above < 0 < below:
-            if not holdable(self.problem, sign.name):
-                self._reject(
-                    t, translatable("%(sign)s slides under several forces that contain multipliers", sign=sign.of)
-                )
-            if other := next((name for name, value in pattern.items() if value == SLIDING and name != sign.name), None):
-                self._reject(
-                    t,
-                    translatable(
-                        "%(other)s and %(sign)s slide at the same time", other=self._signs[other].of, sign=sign.of
-                    ),
-                )
-            return SLIDING
-        if above > 0 > below:
-            self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=sign.of))
-        return 1 if above >= 0 and below >= 0 else -1
+    def _is_zero(self, name: str, pattern: Pattern, t: Any, state: Numbers) -> bool:
+        """Return True if a sign is zero, and the accelerations decide about it."""
+        sign = self._signs[name]
+        if sign.by in (DependsOn.TIME, DependsOn.REACTION) or not self._vanishes("switch", sign, pattern, t, state):
+            return False
+        return self._is_decided_by_accelerations(sign, pattern, t, state)
 
-    def _with_reactions(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
-        """Return a pattern with the signs of the multipliers in forces.
+    def _decided(self, pattern: Pattern, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
+        """Return a pattern with the signs that the accelerations agree with.
 
-        A multiplier of zero has any sign.
+        They are those of functions that are zero, and of multipliers in forces.
         """
-        if not self.problem.reacting:
+        if not zeros and not self.problem.reacting:
             return pattern
-        for side, function in self._unique(pattern):
-            if not side * function(self._inputs(t, state))[0] > 0:
+        modes = self._modes_at(pattern, zeros)
+        decided = self._only(modes, zeros, t, state)
+        sliding = _sliding(decided)
+        if self.problem.reacting or len(sliding) > 1:
+            modes = self._modes_at(decided, sliding)
+            if not (modes.determinants(self._inputs(np.array([t]), state[:, None])) > 0).all():
                 self._reject(t, NOT_UNIQUE)
-        signs = [sign for sign in self.problem.signs if sign.by is DependsOn.REACTION]
+            if sliding and sliding != zeros:
+                self._only(modes, sliding, t, state)
+        return decided
 
-        def least(each: Pattern) -> float:
-            return min((each[sign.name] * self._output("switch", sign, each, t, state) for sign in signs), default=0.0)
+    def _only(self, modes: FrictionModes, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
+        """Return the pattern of the one solution at a state."""
+        found = modes.agreeing(self._inputs(t, state))
+        if not found and modes.rough:
+            names = self._of(modes.rough)
+            self._reject(t, translatable("%(sign)s slides under several forces that contain multipliers", sign=names))
+        if found and all(found[0].is_shared_as(each) for each in found):
+            return found[0].pattern
+        names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
+        if one:
+            self._reject(t, translatable("%(sign)s stick, and may share the friction in several ways", sign=names))
+        if self.problem.reacting:
+            self._reject(t, NOT_UNIQUE)
+        self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=names))
 
-        return max(signs_of_reactions(self.problem, pattern), key=least)
+    def _of(self, names: Sequence[str]) -> str:
+        return ", ".join(self._signs[name].of for name in names)
 
-    def _unique(self, pattern: Pattern) -> list[tuple[int, Evaluation]]:
-        """Return functions that show unique accelerations, each with its sign there."""
-        what = UNIQUE, frozenset(pattern.items())
+    def _modes_at(self, pattern: Pattern, zeros: Sequence[str]) -> FrictionModes:
+        known = {name: value for name, value in pattern.items() if name not in zeros}
+        what = FrictionModes, frozenset(known.items()), tuple(zeros)
         if what not in self._functions:
-            found = uniqueness(self.problem, pattern)
-            self._functions[what] = [(side, evaluation(program, self._precision)) for side, program in found]
+            self._functions[what] = FrictionModes(self.problem, known, zeros, self._precision)
         return self._functions[what]
 
     def _passed(self, before: Mode, after: Mode, sign: Sign, t: Any, state: Numbers) -> Numbers:
@@ -471,27 +468,41 @@ class HybridMotion:
             pattern[name] = event.to if self._precision.ratio(event.t) <= t else -event.to
         while self._to_come and self._precision.ratio(self._to_come[0]) <= t:
             self._to_come.popleft()
+        zeros = []
         for sign in self.problem.signs:
             if sign.name in self._time_events or sign.by is DependsOn.REACTION:
                 continue
             if self._vanishes("switch", sign, pattern, t, state):
-                pattern[sign.name] = self._leaving(sign, pattern, t, state)
                 self._left[sign.name] = t
+                if sign.by is not DependsOn.TIME and self._is_decided_by_accelerations(sign, pattern, t, state):
+                    zeros.append(sign.name)
+                    continue
+                pattern[sign.name] = self._leaving(sign, pattern, t, state)
             else:
                 pattern[sign.name] = 1 if self._output("switch", sign, pattern, t, state) > 0 else -1
-        return self._with_reactions(pattern, t, state)
+        return self._decided(pattern, zeros, t, state)
 
-    def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int | str:
-        """Return the sign with which a motion starts from a switching surface."""
+    def _leaving(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> int:
+        """Return the sign with which a motion leaves a switching surface.
+
+        Accelerations do not decide about it.
+        """
         if sign.by is DependsOn.TIME:
             soon = t + self._precision.number(repr(SOON * self._span))
             return 1 if self._output("switch", sign, pattern, soon, state) >= 0 else -1
-        return self._sign_behind(sign, pattern, t, state)
+        if sign.by is DependsOn.CONFIGURATION and not self._vanishes("switch_rate", sign, pattern, t, state):
+            return 1 if self._output("switch_rate", sign, pattern, t, state) > 0 else -1
+        return self._reject(
+            t,
+            translatable(
+                "%(sign)s is zero, and not in forces alone, which leaves open how the motion continues", sign=sign.of
+            ),
+        )
 
     def _crowded(self, t: Any) -> bool:
         return len(self.intervals) > CROWD and float(t - self.intervals[-CROWD].start) < CROWDED * self._span
 
-    def _reject(self, t: Any, reason: str) -> None:
+    def _reject(self, t: Any, reason: str) -> NoReturn:
         raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
 
     # ---- numbers at a given time ----
@@ -543,6 +554,10 @@ def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, F
     behind = precision.number(problem.start["t"])
     knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
     return [(t, knot) for t, knot in reversed(knots) if t > behind]
+
+
+def _sliding(pattern: Pattern) -> list[str]:
+    return [name for name, value in pattern.items() if value == SLIDING]
 
 
 def _close(numbers: Vector, others: Vector) -> bool:

@@ -9,19 +9,17 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
+from ..program.friction import SLIDING, Pattern, room_to_slide
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
 from ..program.rewriting import computing
 from ..program.sign_pattern import (
-    SLIDING,
-    Pattern,
     problem_in,
     program_in,
     program_with_values,
     sharing_programs,
     switching_function,
-    uniqueness,
 )
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import settle
@@ -31,6 +29,7 @@ from .energy import EnergyBalance
 from .engines.engine import Solutions, Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
+from .friction_modes import modes_that_may_agree
 from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
@@ -65,22 +64,19 @@ class SwitchingFunctions(SignedFunctions):
         for sign in problem.signs:
             if sign.name not in known:
                 value = pattern[sign.name]
-                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == SLIDING else (-value,))]
-        of_signs, unique = list(self._rows), uniqueness(problem, pattern)
-        self._rows += [(UNIQUE, 0, side) for side, _ in unique]
+                sides = [(1, 1), (-1, 1)] if value == SLIDING else [(-value, value)]
+                self._rows += [(sign.name, to, inside) for to, inside in sides]
         self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
-        self._functions = problem.once(
+        self._functions, self._modes = problem.once(
             what,
             problem.switching,
-            lambda: [
-                evaluation(program, precision)
-                for program in (
-                    *(_inside(problem, pattern, name, to) for name, to, _ in of_signs),
-                    *(program for _, program in unique),
-                )
-            ],
+            lambda: (
+                [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
+                modes_that_may_agree(problem, pattern, precision),
+            ),
         )
+        self._rows += [(UNIQUE, 0, 1)] * (self._modes.count if self._modes else 0)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the values of the switching functions, negative outside of the pattern.
@@ -97,15 +93,16 @@ class SwitchingFunctions(SignedFunctions):
         ndarray, shape (functions, k)
         """
         inputs = self._inputs(times, states)
-        found = [as_floats(function(inputs)[0]) for function in self._functions]
-        inside = np.array([side for *_, side in self._rows], dtype=float)
-        return inside[:, None] * np.reshape(found, (len(self._rows), len(times))) + self._rounding
+        found = np.reshape([as_floats(function(inputs)[0]) for function in self._functions], (-1, len(times)))
+        inside = np.array([side for *_, side in self._rows[: len(found)]], dtype=float)
+        signed = inside[:, None] * found + self._rounding
+        return np.concatenate([signed, self._modes.determinants(inputs)]) if self._modes else signed
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
     """Return the function whose sign is the side of a switching surface."""
     if pattern[name] == SLIDING:
-        return switching_function(problem, "drive", name, {**pattern, name: to})
+        return room_to_slide(problem, pattern, name, to)
     return switching_function(problem, "switch", name, pattern)
 
 

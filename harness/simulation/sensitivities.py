@@ -24,11 +24,12 @@ import numpy as np
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import derivative_name
+from ..program.friction import SLIDING
 from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import read_precision
-from ..program.sign_pattern import SLIDING, switching_function
+from ..program.sign_pattern import switching_function
 from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
 from .engines.taylor import states_of

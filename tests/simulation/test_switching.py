@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from refusing import failing
+from scipy.optimize import brentq
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -265,6 +266,23 @@ def test_dry_friction_stops_a_mass_and_holds_it(engine):
     assert report.coordinates["x"] == pytest.approx(0.1, abs=1e-10)
     assert [(s.outcome) for s in report.switchings] == [EventOutcome.SLIDING]
     assert report.switchings[0].t == pytest.approx(0.2, abs=1e-9)
+
+
+COUPLED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = [spring = (x - y)^2], forces = [t - 3*signum(dot(x)), -signum(dot(y))])$
+scene : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 6])$
+"""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_masses_with_dry_friction_rest_together(engine):
+    """They were refused. Truth: x'' = t - 3 - 2 x from t = 3 on, and y moves from 2 x = 1 on."""
+    report = end_of(asked(COUPLED), engine)
+    w = math.sqrt(2)
+    moves = brentq(lambda s: s - math.sin(w * s) / w - 1, 0, 3)
+    assert outcomes(report) == [EventOutcome.RELEASED] * 2
+    assert [each.t for each in report.switchings] == pytest.approx([3, 3 + moves], abs=1e-9)
 
 
 def test_a_mass_rests_at_the_bottom_of_a_kink():

@@ -1,0 +1,200 @@
+"""Amounts of friction, and the linear equations that they satisfy.
+
+A sign s_j in forces has an amount y_j: the sign itself, or s_j size_j if these forces contain multipliers. The
+accelerations under given amounts are affine in them (`maxima/program/reacting_forces.mac`), and so are
+
+    drive_j        the first derivative of the switching function that contains accelerations,
+    size_j         the largest amount,
+    reaction_k     the multipliers whose signs forces contain.
+
+A motion slides on switching surfaces with the amounts of drive_j = 0.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
+
+from .differentiation import derivative_name, differentiated
+from .motion_problem import MotionProblem
+from .motion_program import Atom, Call, Name, Operation, Program, names_used
+from .rewriting import ONE, ZERO, computing, with_numbers
+from .tape import Tape
+
+SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
+Pattern = Mapping[str, int | str]
+Row = list[Atom]
+
+
+def unknown_amounts(problem: MotionProblem, zeros: Collection[str]) -> tuple[str, ...]:
+    """Return the signs whose amounts the equations determine.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    zeros : collection of str
+        Signs of the switching surfaces on which the motion is.
+
+    Returns
+    -------
+    tuple of str
+        Those, and the ones with multipliers in their sizes.
+    """
+    sized = {sign.name for place, sign in enumerate(problem.signs, 1) if f"size[{place}]" in problem.switching.outputs}
+    return tuple(sign.name for sign in problem.signs if sign.name in sized or sign.name in zeros)
+
+
+def affine_terms(
+    problem: MotionProblem, pattern: Pattern, zeros: Collection[str], unknown: Collection[str]
+) -> Program | None:
+    """Return constants and slopes of quantities that are affine in amounts.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    pattern : Pattern
+        The values of the other signs.
+    zeros : collection of str
+        Signs whose drives are wanted.
+    unknown : collection of str
+        As `unknown_amounts` returns them.
+
+    Returns
+    -------
+    Program or None
+        Outputs ``drive[j]`` of the zeros, ``size[j]``, ``reaction[k]`` and ``regular``, each where the amounts are
+        zero, and ``d(output, sign)`` for each amount. None if a drive, size or reaction is not affine.
+    """
+    wanted = {f"drive[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.name in zeros}
+    wanted |= {name for name in problem.switching.outputs if name.startswith(("size[", "reaction[", "regular"))}
+    given = {name: Fraction(value) for name, value in pattern.items() if name not in unknown}
+    program = with_numbers(computing(problem.switching, wanted), given)
+    both = differentiated(program, {name: {name: ONE} for name in unknown})
+    slopes = computing(both, both.outputs.keys() - program.outputs.keys())
+    if not names_used(slopes).isdisjoint(unknown):
+        return None
+    return with_numbers(both, dict.fromkeys(unknown, ZERO))
+
+
+def slides(problem: MotionProblem, name: str) -> bool:
+    """Return True if a motion can slide on a switching surface with a drive.
+
+    It cannot if multipliers stand in its forces in several directions.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    name : str
+        One of its signs.
+
+    Returns
+    -------
+    bool
+    """
+    ones = {sign.name: 1 for sign in problem.signs}
+    return affine_terms(problem, ones, {name}, unknown_amounts(problem, {name})) is not None
+
+
+def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:
+    """Return the program of the signs that slide.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    pattern : Pattern
+        1, -1 or `SLIDING` for each sign.
+
+    Returns
+    -------
+    Program
+        An output by the name of each sliding sign: y_j/size_j, from drive_j = 0 if it slides, from y_j = s_j size_j
+        otherwise.
+    """
+    zeros = [name for name, value in pattern.items() if value == SLIDING]
+    unknown = unknown_amounts(problem, zeros)
+    terms = affine_terms(problem, pattern, zeros, unknown)
+    tape = Tape({*terms.inputs, *(name for name, _ in terms.assignments), *pattern})
+    equations = _Equations(terms, {sign.name: place for place, sign in enumerate(problem.signs, 1)}, unknown, tape)
+    amounts = _solved([equations.row(name, pattern[name]) for name in unknown], tape)
+    signs = [(name, equations.share(name, amounts)) for name in zeros]
+    outputs = {name: Name(name) for name in zeros}
+    whole = replace(terms, assignments=(*terms.assignments, *tape.assignments, *signs), outputs=outputs)
+    return computing(whole, outputs)
+
+
+def room_to_slide(problem: MotionProblem, pattern: Pattern, name: str, side: int) -> Program:
+    """Return the program of the distance of a sliding sign to a limit.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    pattern : Pattern
+        1, -1 or `SLIDING` for each sign.
+    name : str
+        A sign that slides.
+    side : int
+        The limit, 1 or -1.
+
+    Returns
+    -------
+    Program
+        One output, 1 - side s_j.
+    """
+    signs = sliding_signs(problem, pattern)
+    left = Call(Operation.SUBTRACT, (ONE, Call(Operation.MULTIPLY, (Fraction(side), Name(name)))))
+    room = f"{name}_room"
+    whole = replace(signs, assignments=(*signs.assignments, (room, left)), outputs={room: Name(room)})
+    return computing(whole, whole.outputs)
+
+
+class _Equations:
+    """The linear equations of the amounts, written on a tape."""
+
+    def __init__(self, terms: Program, places: Mapping[str, int], unknown: Sequence[str], tape: Tape) -> None:
+        self._terms, self._places, self._unknown, self._tape = terms.outputs, places, unknown, tape
+
+    def _affine(self, quantity: str, name: str, otherwise: Fraction) -> Row:
+        """Return the slopes of a quantity, then its constant."""
+        output = f"{quantity}[{self._places[name]}]"
+        slopes = [self._terms.get(derivative_name(output, other), ZERO) for other in self._unknown]
+        return [*slopes, self._terms.get(output, otherwise)]
+
+    def row(self, name: str, sign: int | str) -> Row:
+        """Return the coefficients of a sign's equation, then the right side."""
+        if sign == SLIDING:
+            *slopes, constant = self._affine("drive", name, ZERO)
+            return [*(self._tape(Operation.NEGATE, slope) for slope in slopes), constant]
+        *slopes, constant = (self._tape.product(Fraction(sign), term) for term in self._affine("size", name, ONE))
+        own = [ONE if other == name else ZERO for other in self._unknown]
+        return [*(self._tape(Operation.SUBTRACT, *pair) for pair in zip(own, slopes, strict=True)), constant]
+
+    def share(self, name: str, amounts: Sequence[Atom]) -> Atom:
+        """Return the share that an amount has of its size: the sign."""
+        *slopes, constant = self._affine("size", name, ONE)
+        terms = (self._tape.product(slope, y) for slope, y in zip(slopes, amounts, strict=True))
+        return self._tape.quotient(amounts[self._unknown.index(name)], self._tape.sum([constant, *terms]))
+
+
+def _solved(rows: list[Row], tape: Tape) -> list[Atom]:
+    """Return the solution of linear equations by elimination.
+
+    No pivot vanishes where accelerations are unique: the leading minors have the sign of the determinants of modes.
+    """
+
+    def less(a: Atom, factor: Atom, b: Atom) -> Atom:
+        return tape(Operation.SUBTRACT, a, tape.product(factor, b))
+
+    for k, pivot in enumerate(rows):
+        for row in rows[k + 1 :]:
+            factor = tape.quotient(row[k], pivot[k])
+            row[k + 1 :] = [less(a, factor, b) for a, b in zip(row[k + 1 :], pivot[k + 1 :], strict=True)]
+    found: list[Atom] = []
+    for k, (*row, right) in reversed(list(enumerate(rows))):
+        for entry, value in zip(row[k + 1 :], found, strict=True):
+            right = less(right, entry, value)
+        found.insert(0, tape.quotient(right, row[k]))
+    return found

@@ -1,0 +1,218 @@
+"""Modes of friction at a state, and which of them the accelerations agree with.
+
+At a zero of a switching function its sign is 1, -1, or lets the motion slide on the surface. In each mode the amounts
+of friction satisfy linear equations (`harness/program/friction.py`). A mode agrees if a sliding amount is at most as
+large as its size, if drives lead to the side of the sign, and if multipliers have the signs that forces contain.
+
+The accelerations are unique if one solution agrees. They remain so while the determinants of all modes are positive:
+a piecewise linear map whose pieces have determinants of one sign is proper, and its degree, the number of solutions, is
+the same for all right sides and under continuous changes (Scholtes, Introduction to Piecewise Differentiable Equations,
+section 2.3).
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from ..program.differentiation import derivative_name
+from ..program.friction import SLIDING, Pattern, affine_terms, slides, unknown_amounts
+from ..program.motion_problem import DependsOn, MotionProblem
+from ..program.precision import Precision
+from .evaluation import Numbers, as_floats, evaluation
+from .matrices import Vector
+from .zeros import ZERO
+
+SAME = 1e-9  # of their sizes: a difference that rounding may make
+SINGULAR = 1e12  # condition number of equations without a unique solution
+
+
+class Solution(NamedTuple):
+    """A mode that agrees with its solution."""
+
+    pattern: Pattern
+    drives: Vector  # of the zeros
+    amounts: Vector  # zero where they have no effect
+    sizes: Vector  # of the largest terms of drives, then of the sizes of amounts
+
+    def accelerates_as(self, other: "Solution") -> bool:
+        """Return True if the drives are those of another solution."""
+        return _close(self.drives, other.drives, self.sizes[: len(self.drives)])
+
+    def is_shared_as(self, other: "Solution") -> bool:
+        """Return True if the amounts of friction are those of another solution."""
+        return _close(self.amounts, other.amounts, self.sizes[len(self.drives) :])
+
+
+class Terms(NamedTuple):
+    """Affine terms at k states.
+
+    Each has shape (quantities, amounts + 1, k): slopes, then the constant.
+    """
+
+    drives: Numbers
+    sizes: Numbers
+    reactions: Numbers
+    regular: Numbers  # shape (k,)
+
+
+class FrictionModes:
+    """All modes at zeros of switching functions.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    pattern : Pattern
+        The values of the other signs.
+    zeros : collection of str
+        Signs with drives whose switching functions vanish.
+    precision : Precision
+        Numbers of the inputs.
+    """
+
+    def __init__(self, problem: MotionProblem, pattern: Pattern, zeros: Collection[str], precision: Precision) -> None:
+        self._places = {sign.name: place for place, sign in enumerate(problem.signs, 1)}
+        self._zeros = [name for name in self._places if name in zeros]
+        self.rough = [name for name in self._zeros if not slides(problem, name)]
+        self._unknown = unknown_amounts(problem, set(zeros) - set(self.rough))
+        self._reactions = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
+        self._branches = []  # patterns of the signs of multipliers, with their terms as functions
+        for signs in product((1, -1), repeat=len(self.rough) + len(self._reactions)):
+            branch = {**pattern, **dict(zip([*self.rough, *self._reactions], signs, strict=True))}
+            terms = affine_terms(problem, branch, self._zeros, self._unknown)
+            self._branches.append((branch, list(terms.outputs), evaluation(terms, precision)))
+
+    @property
+    def count(self) -> int:
+        """Number of modes."""
+        return len(self._branches) * 3 ** (len(self._zeros) - len(self.rough))
+
+    def agreeing(self, inputs: Numbers) -> list[Solution]:
+        """Return the modes that agree with their solutions at a state.
+
+        Parameters
+        ----------
+        inputs : ndarray, shape (inputs,)
+            Inputs of the motion's programs without signs.
+
+        Returns
+        -------
+        list of Solution
+            Modes with most sliding signs first. Those without a unique solution are left out: where the amounts are
+            not unique, the ends of their ranges agree in other modes.
+        """
+        found = (self._solution(pattern, terms) for pattern, terms in self._modes(inputs[:, None]))
+        agreeing = [solution for solution in found if solution is not None]
+        return sorted(agreeing, key=lambda solution: -list(solution.pattern.values()).count(SLIDING))
+
+    def determinants(self, inputs: Numbers) -> Numbers:
+        """Return the determinant of each mode, positive where accelerations are unique.
+
+        Parameters
+        ----------
+        inputs : ndarray, shape (inputs, k)
+            Inputs of the motion's programs without signs.
+
+        Returns
+        -------
+        ndarray, shape (modes, k)
+        """
+        modes = self._modes(inputs)
+        return np.array([terms.regular * np.linalg.det(self._equations(mode, terms)[0]) for mode, terms in modes])
+
+    def _modes(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
+        free = [name for name in self._zeros if name not in self.rough]
+        for branch, outputs, function in self._branches:
+            terms = self._terms(dict(zip(outputs, as_floats(function(inputs)), strict=True)), inputs.shape[1])
+            for signs in product((1, -1, SLIDING), repeat=len(free)):
+                yield {**branch, **dict(zip(free, signs, strict=True))}, terms
+
+    def _terms(self, values: Mapping[str, Vector], k: int) -> Terms:
+        def affine(quantity: str, names: Sequence[str], constant: float) -> Numbers:
+            outputs = [f"{quantity}[{self._places[name]}]" for name in names]
+            slopes = [[values.get(derivative_name(each, y), np.zeros(k)) for y in self._unknown] for each in outputs]
+            rows = [[*row, values.get(each, np.full(k, constant))] for row, each in zip(slopes, outputs, strict=True)]
+            return np.reshape(rows, (len(names), len(self._unknown) + 1, k))
+
+        return Terms(
+            affine("drive", self._zeros, 0.0),
+            affine("size", self._unknown, 1.0),
+            affine("reaction", self._reactions, 0.0),
+            values.get("regular", np.ones(k)),
+        )
+
+    def _equations(self, mode: Pattern, terms: Terms) -> tuple[Numbers, Numbers]:
+        """Return the equations of the amounts.
+
+        Coefficients have shape (k, amounts, amounts), right sides (k, amounts).
+        """
+        rows = []
+        for place, name in enumerate(self._unknown):
+            if mode[name] == SLIDING:
+                drive = terms.drives[self._zeros.index(name)]
+                rows.append([*-drive[:-1], drive[-1]])
+            else:
+                size = mode[name] * terms.sizes[place]
+                own = np.arange(len(self._unknown))[:, None] == place
+                rows.append([*(own - size[:-1]), size[-1]])
+        equations = np.moveaxis(np.array(rows).reshape(len(rows), len(rows) + 1, -1), -1, 0)
+        return equations[:, :, :-1], equations[:, :, -1]
+
+    def _solution(self, mode: Pattern, terms: Terms) -> Solution | None:
+        matrices, right = self._equations(mode, terms)
+        if not _is_regular(matrices[0]):
+            return None
+        amounts = np.linalg.solve(matrices[0], right[0])
+        (drives, of_drives), (limits, of_limits), (reactions, of_reactions) = (
+            _values_and_sizes(each[..., 0], amounts) for each in terms[:3]
+        )
+        sliding = np.array([mode[name] == SLIDING for name in self._unknown], dtype=bool)
+        signs = np.array([0 if mode[name] == SLIDING else mode[name] for name in self._zeros])
+        sides = np.array([mode[name] for name in self._reactions])
+        if (
+            (signs * drives < -ZERO * of_drives).any()
+            or (np.abs(amounts) > np.abs(limits) + ZERO * of_limits)[sliding].any()
+            or (np.abs(limits) <= ZERO * of_limits)[sliding].any()
+            or (sides * reactions < -ZERO * of_reactions).any()
+        ):
+            return None
+        reach = np.concatenate([np.abs(each[:, :-1, 0]) for each in terms[:3]]).max(axis=0, initial=0.0)
+        return Solution(mode, drives, np.where(reach > 0, amounts, 0.0), np.concatenate([of_drives, of_limits]))
+
+
+def modes_that_may_agree(problem: MotionProblem, pattern: Pattern, precision: Precision) -> FrictionModes | None:
+    """Return the modes at the surfaces on which a motion slides.
+
+    Parameters
+    ----------
+    problem, pattern, precision
+        As for `FrictionModes`.
+
+    Returns
+    -------
+    FrictionModes or None
+        None if at most one sign slides and no force contains multipliers: the amount is unique where it is finite.
+    """
+    sliding = [name for name, value in pattern.items() if value == SLIDING]
+    return FrictionModes(problem, pattern, sliding, precision) if problem.reacting or len(sliding) > 1 else None
+
+
+def _values_and_sizes(terms: Numbers, amounts: Vector) -> tuple[Vector, Vector]:
+    """Return affine values, shape (quantities,), and the sizes of their largest terms."""
+    products = terms * np.append(amounts, 1.0)
+    return products.sum(axis=1), np.abs(products).max(axis=1, initial=0.0)
+
+
+def _close(numbers: Vector, others: Vector, sizes: Vector) -> bool:
+    return bool((np.abs(numbers - others) <= SAME * sizes).all())
+
+
+def _is_regular(matrix: Numbers) -> bool:
+    """Return True if equations have one solution, in any units."""
+    if not np.isfinite(matrix).all():
+        return False
+    rows, columns = np.abs(matrix).max(axis=1, initial=0.0), np.abs(matrix).max(axis=0, initial=0.0)
+    scaled = matrix / np.sqrt(np.outer(rows, columns))
+    return bool(np.isfinite(scaled).all() and (not len(scaled) or np.linalg.cond(scaled) < SINGULAR))
