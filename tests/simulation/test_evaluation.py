@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from problems import problem as example
 
+from holonom.program.heyoka_function import import_heyoka
 from holonom.program.motion_problem import motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
@@ -16,7 +17,7 @@ from holonom.simulation.constraints.program_projection import (
     nearest_state,
 )
 from holonom.simulation.engines.robust import RobustEngine
-from holonom.simulation.evaluation import LazyCompiledFunction, evaluation, evaluation_once
+from holonom.simulation.evaluation import LazyCompiledFunction, evaluation, evaluation_once, in_full_vectors
 from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.inputs import Inputs
 from holonom.simulation.nominal import nominal_of
@@ -116,3 +117,14 @@ def test_all_that_follow_a_motion_ask_the_same_matrices():
     assert second.steps > 0
     assert mode.matrices is second.matrices
     assert mode.matrices is first.watch._matrices
+
+
+def test_heyoka_is_given_full_vectors_and_no_point_more_comes_back():
+    """The rest of a vector is computed by other instructions, with other roundings."""
+    given = []
+    doubled = in_full_vectors(lambda inputs: given.append(inputs.shape[1]) or 2 * inputs)
+    width = import_heyoka().recommended_simd_size()
+    for points in range(1, 2 * width + 2):
+        inputs = np.arange(3.0 * points).reshape(3, points)
+        assert np.array_equal(doubled(inputs), 2 * inputs)
+    assert given == [-(-points // width) * width for points in range(1, 2 * width + 2)]

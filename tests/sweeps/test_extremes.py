@@ -110,3 +110,15 @@ def test_rounding_at_the_start_is_no_sign():
     ball = np.array([[[1e-17, 0.0, -1e-17]], [[-100.0] * 3], [[1e4] * 3]])  # down, and up again after 1/100 of the step
     steps = Steps(ball, np.zeros((1, 3)), np.ones((1, 3)), 0.0)
     assert first_zero(steps) == pytest.approx([0.01] * 3, rel=1e-12)
+
+
+def test_what_falls_off_and_is_finite_is_resolved_in_itself_or_beside_something_larger(steps):
+    """Cubic polynomials, twelve coefficients as they are, and an infinite one among the first."""
+    cubic, infinite = steps.coefficients.copy(), steps.coefficients.copy()
+    cubic[4:] = 0
+    infinite[4:], infinite[1, 2] = 0, np.inf
+    three = Steps(
+        np.concatenate([cubic, steps.coefficients, infinite], axis=2), steps.middle, steps.length, steps.least
+    )
+    for least, expected in ((0.0, (True, False, False)), (1e12, (True, True, False))):
+        assert np.array_equal(three.resolved(least), np.repeat(expected, ELEMENTS))

@@ -14,6 +14,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.singularity import least_of, singular_values_at
 from holonom.simulation.engines import robust
+from holonom.simulation.engines.collocation import NODES, TAIL, Collocation
 from holonom.simulation.engines.engine import Solutions
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.residuals import condition
@@ -252,3 +253,10 @@ def test_robust_engine_ends_with_a_step_that_rounding_leaves(max_step, until):
     assert motion.report.t == float(until)
     assert motion.report.steps == round(float(until) / max_step) + 1
     assert motion.report.trusted
+
+
+def test_the_last_coefficients_alone_are_the_error_of_a_collocation():
+    """Truth: what is left of a sum of Legendre polynomials is at most the sum of the sizes of their coefficients."""
+    for k, coefficients in enumerate(np.eye(NODES + 2)):
+        found = Collocation(0.0, 1.0, 2 * coefficients[:, None], np.zeros((NODES + 1, 1)))
+        assert found.error(np.array([0.5])) == (4 if k >= NODES + 2 - TAIL else 0)
