@@ -9,6 +9,7 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.projection import InconsistentConstraints, settle
+from holonom.simulation.constraints.singularity import VANISHED, Watch
 from holonom.simulation.matrices import Matrices, MotionMatrices
 from holonom.simulation.nominal import Nominal
 
@@ -106,3 +107,15 @@ def test_contradicting_constraints_are_refused_with_what_remains():
     # x - y = 1/2 misses both by 1/2; over the length sqrt(2/m) of a gradient in the mass metric
     assert refused.value.residual == pytest.approx(0.5 / np.sqrt(2 / 3), rel=1e-12)
     assert refused.value.detail.split(";")[0] == "1"
+
+
+@pytest.mark.parametrize(
+    ("constraints", "name"),
+    [("[x^2 + y^2 - 4, 7*(x - y - 2)]", "lambda1"), ("[x - y - 2, 9*(x^2 + y^2 - 4)]", "lambda2")],
+)
+def test_a_gradient_has_vanished_where_a_share_of_its_first_size_is_left(write_scene, constraints, name):
+    """Truth: that of x^2 + y^2 is in proportion to the radius, 2 at first; that of x - y is constant."""
+    found = motion_problem(write_scene(CIRCLE.format(constraints=constraints, x="2", y="0")), Request(), Limits())
+    watch = Watch(found, MotionMatrices(found))
+    for share, expected in ((1.0, None), (1.01 * VANISHED, None), (0.99 * VANISHED, name)):
+        assert watch.vanished(0.0, np.array([1.2 * share, 1.6 * share, 0.0, 0.0])) == expected
