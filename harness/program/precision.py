@@ -2,7 +2,7 @@
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -39,6 +39,20 @@ class Precision:
         while one + distance / two != one:
             distance = distance / two
         return distance
+
+    def numbers(self, values: Sequence[float]) -> Any:
+        """Return floats as numbers of this precision.
+
+        Parameters
+        ----------
+        values : sequence of float, shape (k,)
+            The floats.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        return np.array([self.number(repr(float(value))) for value in values])
 
     def ratio(self, value: Fraction) -> Any:
         """Return the number nearest to a rational one.

@@ -74,6 +74,7 @@ class ControlMatrix(SignedFunctions):
         -------
         float or None
         """
+        step = step._replace(block=None)  # each step has its rows
         while True:
             self._choose_rows(step)
             zero = self.first_crossing(step, {})

@@ -40,9 +40,7 @@ class DefectControl:
 
     def __init__(self, span: Any, precision: Precision) -> None:
         self._span = float(span)
-        self._nodes, self._weights = (
-            np.array([precision.number(repr(float(value))) for value in values]) for values in (NODES, WEIGHTS)
-        )
+        self._nodes, self._weights = map(precision.numbers, (NODES, WEIGHTS))
         self.error = 0.0
 
     def take(self, step: Step) -> None:

@@ -21,7 +21,6 @@ from .accuracy_check import may_hide
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .inputs import Inputs
-from .matrices import Vector
 
 POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a step to about the order of the Taylor engine
 MORE_DIGITS = 10  # in which they are found
@@ -222,13 +221,10 @@ class EnergyBalance:
     def _output(self, name: str, times: Numbers, states: Numbers, multipliers: Numbers | None) -> Numbers:
         return self._evaluate(self._inputs(times, states, multipliers))[self._rows[name]]
 
-    def _numbers(self, values: Vector) -> Numbers:
-        return np.array([self._precision.number(repr(float(value))) for value in values])
-
     def _without_power(self, size: int) -> bool:
         """Return True if no force or constraint does work at probe states."""
-        states = self._numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
-        times = self._numbers(np.array(PROBES))
+        states = self._precision.numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
+        times = self._precision.numbers(PROBES)
         return not any(self._output("power", times, states, None))
 
 

@@ -4,7 +4,7 @@ They are examined part by part, like switching functions (`zeros.py`), through t
 integrated to its end once before it is recorded, so that the recording ends with a step of the engine.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
@@ -143,13 +143,15 @@ class Events(SignedFunctions):
         HolonomError
             An expression has no real, finite value before.
         """
+        self._rows, all_seen = self._with_sides(sides), sides.keys() >= set(self._names)
+        if all_seen and self._is_clear(step):
+            return None
         all_rows = self._rows = [(name, -1, 1) for name in self._names]
-        sizes = self._sizes_in(step) if len(sides) < len(self._names) else None
+        sizes = None if all_seen else self._sizes_in(step)
         for part, places, values in self._looked_at(step):
             begun = {} if sizes is None else self._see_sides(part, values, sizes, sides)
-            known = [row for row, name in enumerate(self._names) if name in sides]
-            self._rows = [(self._names[row], -sides[self._names[row]], sides[self._names[row]]) for row in known]
-            signed = values[known] * np.array([[side] for *_, side in self._rows]).reshape(-1, 1)
+            self._rows = self._with_sides(sides)
+            signed = self._signed(values)
             found = self._first_in(part, places, signed, [begun.get(name, 0) for name, *_ in self._rows])
             self._require_values(places, values, found)
             if found is not None:
@@ -218,6 +220,13 @@ class Events(SignedFunctions):
         -------
         ndarray, shape (expressions, l)
         """
+        return self._signed(self._evaluate(times, states))
+
+    def _with_sides(self, sides: Mapping[str, int]) -> list[tuple[str, int, int]]:
+        return [(name, -sides[name], sides[name]) for name in self._names if name in sides]
+
+    def _signed(self, values: Numbers) -> Numbers:
+        """Return the rows of values whose side is known, each times its sign."""
         places = [self._names.index(name) for name, *_ in self._rows]
         sides = np.array([side for *_, side in self._rows], dtype=float)
-        return sides[:, None] * self._evaluate(times, states)[places]
+        return sides[:, None] * values[places]

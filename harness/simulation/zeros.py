@@ -5,9 +5,12 @@ is sampled at the Chebyshev points of a part and interpolated by a polynomial of
 the resolution. So no feature is missed that lasts longer than 1/2048 of the time span. The length of a step depends
 only on the smoothness of the state, not of the functions. Two zeros close together are found by the polynomial's
 minimum between them. The time is found by taking sections, to the last bit of its numbers.
+
+Short steps are examined many at a time by polynomials of degree 8: those whose coefficients exclude a zero are done.
 """
 
 from abc import ABC, abstractmethod
+from bisect import bisect_right
 from collections.abc import Callable, Collection, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
@@ -18,8 +21,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..program.precision import Precision
-from .engines.engine import Step
-from .evaluation import Numbers
+from .engines.engine import Block, Step
+from .evaluation import Numbers, as_floats
 from .matrices import Vector
 from .nominal import first_order_changes
 
@@ -37,6 +40,11 @@ ROUNDED_TIME = 4 * np.finfo(float).eps  # of a time: how far rounding moves it
 SURE = 2  # digits that a function loses relative to its largest value: one that touches zero may be that much below
 ZERO = 1e-12  # of the change of a function at nominal sizes: it has no sign
 LAST, RESOLVED = 4, 1e-8  # coefficients of a polynomial, and what they are of the largest where it is near
+FEW_DEGREE, SHORT = 8, 1 / 512  # of the time span: steps at whose nodes nothing is missed that lasts 1/2048 of it
+UNCLEAR = 1e-6  # of the largest coefficient: values that a polynomial does not distinguish from zero
+FEW = 16  # steps that are examined first; then twice as many
+FEW_NODES = np.sort(1 + chebyshev.chebpts1(FEW_DEGREE + 1)) / 2
+TO_FEW_COEFFICIENTS = np.linalg.inv(chebyshev.chebvander(2 * FEW_NODES - 1, FEW_DEGREE))
 
 
 class Crossing(NamedTuple):
@@ -45,6 +53,15 @@ class Crossing(NamedTuple):
     t: Any
     name: str  # the sign that changes
     to: int  # its value then
+
+
+class _Portion(NamedTuple):
+    """Consecutive steps of a block that are examined together."""
+
+    block: Block
+    first: int  # place of the first one
+    clear: list[bool]  # for each step: whether no function vanishes there
+    sizes: Numbers  # shape (functions, steps): the largest that each function has been from the first one on
 
 
 class SignedFunctions(ABC):
@@ -57,6 +74,8 @@ class SignedFunctions(ABC):
         self._rows: list[tuple[str, int, int]] = []  # name, value after the crossing, sign before it
         self._sizes: dict[str, float] = {}  # the largest that each function has been
         self._unsure = 10.0 ** (SURE - precision.sure_digits)  # of these: rounding
+        self._nodes, self._places = precision.numbers(NODES), precision.numbers(FEW_NODES)
+        self._portion: _Portion | None = None
         self._sections = np.array([precision.ratio(Fraction(place, SECTIONS)) for place in range(1, SECTIONS)])
 
     @abstractmethod
@@ -75,6 +94,36 @@ class SignedFunctions(ABC):
         ndarray of float, shape (functions, k)
         """
 
+    def _is_clear(self, step: Step) -> bool:
+        """Return True if no function with a sign can vanish in a step."""
+        if step.block is None:
+            return False
+        place, known = bisect_right(step.block.times, step.start) - 1, self._portion
+        if known is None or known.block is not step.block:
+            known = self._portion = self._examined(step.block, place, FEW)
+        elif place >= known.first + len(known.clear):
+            known = self._portion = self._examined(step.block, place, 2 * len(known.clear))
+        if not known.clear[place - known.first]:
+            return False
+        for (name, *_), size in zip(self._rows, known.sizes[:, place - known.first], strict=True):
+            self._sizes[name] = max(self._sizes.get(name, 0.0), size)
+        return True
+
+    def _examined(self, block: Block, first: int, count: int) -> "_Portion":
+        """Examine a number of steps of a block together, by polynomials of a low degree."""
+        times = np.array(block.times[first : first + count + 1])
+        lengths = times[1:] - times[:-1]
+        inside = times[:-1, None] + lengths[:, None] * self._places
+        at = np.concatenate([inside, times[1:, None]], axis=1)
+        values = self.values(at.ravel(), block.states(at.ravel())).reshape(-1, *at.shape)
+        coefficients = values[..., :-1] @ TO_FEW_COEFFICIENTS.T
+        sizes = np.abs(coefficients)
+        largest, reach = sizes.max(axis=-1), sizes[..., 1:].sum(axis=-1)
+        resolved = sizes[..., -2:].max(axis=-1) <= RESOLVED * largest
+        away = (coefficients[..., 0] - reach > UNCLEAR * largest) & (values[..., -1] > 0)
+        clear = (resolved & away).all(axis=0) & (as_floats(lengths) <= SHORT * self._span)
+        return _Portion(block, first, clear.tolist(), np.maximum.accumulate(np.abs(values).max(axis=-1), axis=-1))
+
     def first_crossing(self, step: Step, left: dict[str, Any]) -> Crossing | None:
         """Return the time within a step at which the motion first leaves its pattern.
 
@@ -90,7 +139,7 @@ class SignedFunctions(ABC):
         -------
         Crossing or None
         """
-        if not self._rows:
+        if not self._rows or (not left and self._is_clear(step)):
             return None
         rounding = self._least_after_zero(step) if left else None
         for part, places, values in self._looked_at(step):
@@ -190,7 +239,7 @@ class SignedFunctions(ABC):
 
     def _samples(self, step: Step, places: Numbers) -> tuple[Numbers, Numbers]:
         """Return the times of a step, and the functions there, shape (functions, k)."""
-        numbers = np.array([self._precision.number(repr(float(place))) for place in places])
+        numbers = self._nodes if places is NODES else self._precision.numbers(places)
         times = step.start + (step.end - step.start) * numbers
         if places[-1] == 1.0:
             times[-1] = step.end

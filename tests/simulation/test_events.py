@@ -2,8 +2,10 @@
 
 import io
 import math
+import random
 
 import mpmath
+import numpy as np
 import pytest
 from refusing import failing
 from rich.console import Console
@@ -13,6 +15,7 @@ from holonom.display.motion import show_simulation
 from holonom.failures import ErrorKind, HolonomError
 from holonom.simulation.events import Ending
 from holonom.simulation.output import report_document
+from holonom.simulation.result import Report
 
 THROWN = """
 system : holonomic_system(coordinates = [x, y], parameters = [g], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
@@ -111,6 +114,62 @@ def test_a_switched_motion_ends_in_a_later_part():
     report = scene.simulate(samples=2).report
     assert (report.t, report.coordinates["x"]) == pytest.approx((2, 1), rel=1e-14)
     assert [switching.t for switching in report.switchings] == [1]
+
+
+OSCILLATORS = """
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = x^2/2 + y^2)$
+swings : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = sqrt(2)], time_span = [0, 60],
+  until = [{until}])$
+"""
+SHORT_STEPS = (("taylor", "double"), ("taylor", "extended"), ("runge-kutta", "double"))
+
+
+def swung(until: str, engine: str, precision: str = "double", max_step: float = 0.1) -> Report:
+    """x = sin(t), y = sin(sqrt(2) t), in steps of which many are examined at a time if they are short."""
+    scene = holonom.system(OSCILLATORS.format(until=until))
+    report = scene.simulate(samples=2, engine=engine, precision=precision, tol=1e-14, max_step=max_step).report
+    assert report.steps >= report.t / max_step
+    return report
+
+
+@pytest.mark.parametrize(("engine", "precision"), SHORT_STEPS)
+@pytest.mark.parametrize("below", [1e-2, 1e-4, 1e-6, 1e-9, 1e-11])
+def test_a_level_just_below_a_maximum_is_reached_twice_in_a_short_step(below, engine, precision, c_compiler):
+    """No earlier maximum of x + y is as high. Truth: the zero of the closed form."""
+    root = mpmath.sqrt(2)
+    top = mpmath.findroot(lambda t: mpmath.cos(t) + root * mpmath.cos(root * t), 45.54)
+    height = lambda t: mpmath.sin(t) + mpmath.sin(root * t)  # noqa: E731
+    earlier = np.linspace(0, 45, 10_000)
+    with mpmath.workdps(30):
+        level = height(top) - below
+        truth = mpmath.findroot(lambda t: height(t) - level, (top - 0.2, top), solver="illinois")
+        assert np.max(np.sin(earlier) + np.sin(math.sqrt(2) * earlier)) < level
+        found = swung(f"x + y - {mpmath.nstr(level, 20)}b0", engine, precision).t
+    assert float(found) == pytest.approx(float(truth), abs=1e-13 / math.sqrt(below))
+
+
+PULSES = [*((seed, "taylor", 0.1) for seed in range(4)), (4, "runge-kutta", 0.1), *((k, "taylor", 1.0) for k in (5, 6))]
+
+
+@pytest.mark.parametrize(("seed", "engine", "max_step"), PULSES)
+def test_a_pulse_as_short_as_a_part_of_a_step_is_found(seed, engine, max_step, c_compiler):
+    """It lasts 1/2048 of the time span."""
+    time, width = 5 + 50 * random.Random(seed).random(), 60 / 2048 / 2
+    until = f"if t > {time - width!r} and t < {time + width!r} then -1 else 1"
+    assert float(swung(until, engine, max_step=max_step).t) == pytest.approx(time - width, abs=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("engine", "time"), [("taylor", 30.0499), ("taylor", 30.0999), ("taylor", 30.0001), ("runge-kutta", 30.0999)]
+)
+def test_a_jump_shortly_before_the_end_of_a_short_step_is_found_where_it_is(engine, time, c_compiler):
+    assert float(swung(f"if t < {time} then 1 else -1", engine).t) == pytest.approx(time, abs=1e-13)
+
+
+def test_the_first_of_several_events_in_a_short_step_ends_the_motion():
+    report = swung("t - 30.0153, x^2 + 300152/10000 - t - x^2, t - 30.0154", "taylor")
+    assert (report.t, report.ending.crossed) == (pytest.approx(30.0152, abs=1e-13), "37519/1250-t")
 
 
 ONE_SIDED = """

@@ -51,6 +51,17 @@ run : holonomic_scene(system, parameter_values = [c = 1/10, h = -1/2, g = 10], t
   initial_state = [x1 = 1, y1 = 0, x2 = 2, y2 = 0, dot(y1) = 0, dot(y2) = 0])$
 """
 
+# Two bobs at rest below their centres; the fall of the one whose thread is cut at 1 pulls the other to the right.
+PULLED = """
+load("holonom.mac")$
+a : particle(1, [x1, y1])$  b : particle(1, [x2, y2])$
+upper : distance_joint(a, [0, 0], 1)$  lower : distance_joint(b, [5, 0], 1)$
+system : holonomic_system(parameters = [g], assembly(a, b, upper, lower, uniform_gravity(g, a, b),
+  applied_force([-(y1 + 1), 0], b)))$
+run : holonomic_scene(system, parameter_values = [g = 10], time_span = [0, 3],
+  released = [upper = t - 1, lower = (x2 - 5)*(51/10 - x2)],
+  initial_state = [x1 = 0, y1 = -1, x2 = 5, y2 = -1, dot(x1) = 0, dot(x2) = 0])$
+"""
 
 # A body welded to an arm that turns at the rate 2, let go when the arm has turned by a right angle.
 WELDED = """
@@ -83,6 +94,12 @@ def test_a_cut_thread_vanishes_from_the_film():
     assert [t for shape, t in last if shape == "segment"] == [times[times <= cut][-1] for cut in (upper, lower)]
     assert {t for shape, t in last if shape == "point"} == {1.0}
     assert animation(film_of(motion, motion.drawing)).count('attributeName="visibility"') == 2
+
+
+def test_a_condition_that_is_zero_until_another_joint_is_released_was_never_examined():
+    motion = holonom.system(PULLED).simulate(samples=3)
+    (_, lower), at = released(motion), holonom.system(PULLED).simulate
+    assert at(until=lower[0], samples=2)["x2"][-1] == pytest.approx(5.1, rel=1e-13)
 
 
 def test_cut_thread_lets_the_bob_fly_on_a_parabola():

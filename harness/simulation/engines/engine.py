@@ -3,7 +3,7 @@
 An engine that cannot continue raises an error with the reason.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
@@ -51,6 +51,13 @@ def require_reach(steps: int, done: Any, left: Any) -> None:
         )
 
 
+class Block(NamedTuple):
+    """Consecutive steps whose states may be evaluated together, also later."""
+
+    times: Sequence[Any]  # the start of the first step, then the end of each
+    states: Callable[[NDArray[Any]], NDArray[Any]]  # as for `Step`
+
+
 class Step(NamedTuple):
     """A step of the motion with its dense output."""
 
@@ -61,6 +68,7 @@ class Step(NamedTuple):
     # mode, impulse: the motion's mode, and the energy that an impulse at the initial time brought; None from an engine
     mode: "Mode | None" = None
     impulse: Any = None
+    block: Block | None = None  # that it is a step of, or a part of one
 
 
 class Solutions(NamedTuple):

@@ -33,7 +33,7 @@ from ..matrices import MotionMatrices
 from ..nominal import Nominal
 from ..request import EngineName, Stabilization
 from .code import REFERENCE
-from .engine import Step, Task
+from .engine import Block, Step, Task
 from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
@@ -339,20 +339,28 @@ class DormandPrince(ctypes.Structure):
         taken = self.propagate_until(until, most)
         self._times = self._dense = None
         times[taken[3]] = self.time
-        ends = pairwise(times[: taken[3] + 1].tolist())
-        return taken, [Step(*step, partial(states_of, *step, rows)) for step, rows in zip(ends, dense, strict=False)]
+        times, dense = times[: taken[3] + 1], dense[: taken[3], ..., None]
+        block = Block(times.tolist(), partial(_states_in, times, dense))
+        steps = zip(pairwise(block.times), dense, strict=True)
+        return taken, [Step(*ends, partial(states_of, *ends, rows), block=block) for ends, rows in steps]
 
 
-def states_of(start: float, end: float, rows: Floats, times: Floats) -> Floats:
-    """Return states at times of a step by the method's dense output.
+def _states_in(ends: Floats, dense: Floats, times: Floats) -> Floats:
+    """Return states at times of steps between the ends, shape (2n, k)."""
+    place = np.searchsorted(ends[1:-1], times)
+    return states_of(ends[place], ends[place + 1], np.moveaxis(dense[place, ..., 0], 0, -1), times)
+
+
+def states_of(start: float | Floats, end: float | Floats, rows: Floats, times: Floats) -> Floats:
+    """Return states at times of a step, or of a step each, by the dense output.
 
     Its order is 7 (Hairer, Norsett & Wanner I, section II.6).
 
     Parameters
     ----------
-    start, end : float
+    start, end : float, or ndarray of shape (k,)
         Times of the step.
-    rows : ndarray, shape (8, 2n)
+    rows : ndarray, shape (8, 2n, 1) or (8, 2n, k)
         State at the initial time, and coefficients of products of x and 1 - x in turn.
     times : ndarray, shape (k,)
         Times of the step.
@@ -364,9 +372,9 @@ def states_of(start: float, end: float, rows: Floats, times: Floats) -> Floats:
     x = (times - start) / (end - start)
     states = np.zeros((rows.shape[1], len(times)))
     for place, row in enumerate(rows[:0:-1]):
-        states += row[:, None]
+        states += row
         states *= x if place % 2 == 0 else 1 - x
-    return states + rows[0][:, None]
+    return states + rows[0]
 
 
 def _source(problem: MotionProblem, stabilization: Stabilization, decay: float) -> Iterator[str]:

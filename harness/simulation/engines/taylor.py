@@ -27,7 +27,7 @@ from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, compilation, is_worthwhile, running
-from .engine import Step, Task
+from .engine import Block, Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
 from .scaled_time import ScaledTime, in_unit, unit_of
 
@@ -208,15 +208,16 @@ class TaylorEngine(ProgramEngine):
 
     def _at_once(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         *taken, between, _ = self._integrator.propagate_until(until, most, c_output=True, **self._bound)
-        steps = [] if between is None else pairwise(between.times)
         unit, scaled = self._unit, self._unit != 1
+        times = [] if between is None else [time * unit for time in between.times]
         sizes = self._integrator.sizes if scaled else None
 
         def states(times: Numbers) -> Numbers:
             found = between(times / unit)
             return (found / sizes if scaled else found.copy()).T
 
-        return tuple(taken), [Step(start * unit, end * unit, states) for start, end in steps]
+        block = Block(times, states)
+        return tuple(taken), [Step(*ends, states, block=block) for ends in pairwise(times)]
 
     def _one_by_one(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Return each step with its Taylor polynomials."""
