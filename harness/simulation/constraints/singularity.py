@@ -6,8 +6,8 @@ whose gradient itself vanishes, such as a length that shrinks to zero, is not de
 with the one at the initial time.
 
 A motion that meets such a time exactly, a bob drawn straight up into its hinge, is as smooth there as anywhere else: no
-step shrinks, and only the reaction is infinite. So these times are found beforehand: a control changes its sign, and
-there is a point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the initial state.
+step shrinks, and only the reaction is infinite. So these times are found beforehand: a control vanishes, and there is a
+point q with df/dq = 0 that satisfies the constraint f then. Newton's method finds it from the initial state.
 """
 
 from collections.abc import Collection, Iterator
@@ -22,7 +22,7 @@ from ...program.motion_program import Name
 from ...program.rewriting import computing
 from ...program.sign_pattern import program_with_values
 from ...program.table_numbers import TimeFunction
-from ..evaluation import Numbers, as_floats
+from ..evaluation import Evaluation, Numbers, as_floats
 from ..hard_cases import MotionState
 from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from ..place_and_reason import OVERFLOW, place_and_reason
@@ -37,6 +37,7 @@ REACH = 2.0  # steps ahead within which a singular configuration counts as near
 SMALL = 0.5  # least singular value above which none is near, however fast it falls
 POINTS = 2049  # of a time span at which the controls are looked at
 HALVINGS = 60  # of an interval between two of them: down to rounding
+TOUCHED = 1e-9  # of a control at the next of these times: its least size is a zero
 ITERATIONS = 5
 SHORTLY = 1e-6  # of the way to such a time
 VANISHED = 1e-3  # of its size at the initial time: what is left of a gradient that runs to zero
@@ -374,7 +375,7 @@ def no_controls(t: float) -> HolonomError:
 
 
 def zeros_of_controls(problem: MotionProblem, controls: Collection[str], start: float, end: float) -> list[float]:
-    """Return the times of sign changes of a control inside a time span, in order.
+    """Return the times of zeros of a control inside a time span, in order.
 
     Parameters
     ----------
@@ -398,17 +399,42 @@ def zeros_of_controls(problem: MotionProblem, controls: Collection[str], start: 
     of_tables = (name for table in problem.tables for name in table.inputs)
     law = program_with_values(problem, computing(replace(problem.matrices, outputs=laws), laws))
     law = replace(law, inputs=("t", *of_tables))
-    values, grid = TimeFunction(law, problem.tables), np.linspace(start, end, POINTS)
-    signs = np.sign(values(grid))
+    function, grid = TimeFunction(law, problem.tables), np.linspace(start, end, POINTS)
+    values = function(grid)
+    zero = values == 0
+    sampled = grid[1:-1][np.any(zero[:, 1:-1] & ~(zero[:, :-2] & zero[:, 2:]), axis=0)]  # a control may stay zero
+    found = *_sign_changes(function, grid, values), *_touched(function, grid, values), *sampled
+    return sorted({float(t) for t in found})
+
+
+def _sign_changes(function: Evaluation, grid: Vector, values: Numbers) -> Vector:
+    """Return the times between samples at which values change their sign."""
+    signs = np.sign(values)
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
     left, right = grid[places], grid[places + 1]
     for _ in range(HALVINGS):
         middle = (left + right) / 2
-        same = np.sign(values(middle)[controls, np.arange(len(places))]) == signs[controls, places]
+        same = np.sign(function(middle)[controls, np.arange(len(places))]) == signs[controls, places]
         left, right = np.where(same, middle, left), np.where(same, right, middle)
-    zero = signs == 0
-    touched = grid[1:-1][np.any(zero[:, 1:-1] & ~(zero[:, :-2] & zero[:, 2:]), axis=0)]  # a control may stay zero
-    return sorted({*map(float, right), *map(float, touched)})
+    return right
+
+
+def _touched(function: Evaluation, grid: Vector, values: Numbers) -> Vector:
+    """Return the times between samples of one sign at which values touch zero.
+
+    The least size is found by taking thirds.
+    """
+    before, size, after = (np.abs(values[:, first : first + POINTS - 2]) for first in range(3))
+    changes = np.sign(values[:, :-1]) != np.sign(values[:, 1:])
+    largest = np.maximum(before, after)
+    least = (size <= np.minimum(before, after)) & (size < largest)
+    controls, places = np.nonzero(least & ~changes[:, :-1] & ~changes[:, 1:])
+    left, right, row = grid[places], grid[places + 2], np.arange(len(places))
+    for _ in range(HALVINGS):
+        third = (right - left) / 3
+        low, high = (np.abs(function(t)[controls, row]) for t in (left + third, right - third))
+        left, right = np.where(low > high, left + third, left), np.where(low > high, right, right - third)
+    return right[np.abs(function(right)[controls, row]) <= TOUCHED * largest[controls, places]]
 
 
 def _without_gradient(matrices: MotionMatrices, times: list[float], state: Vector, beta: int) -> Iterator[float]:

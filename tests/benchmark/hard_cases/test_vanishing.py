@@ -1,7 +1,7 @@
 """Times at which a controlled length vanishes: a zero of the law, and a point without gradient on the constraint."""
 
 import pickle
-from math import pi
+from math import pi, sqrt
 
 import pytest
 from problems import problem as example
@@ -27,7 +27,7 @@ CIRCLE = "x^2 + y^2 - u^2"
 
 @pytest.fixture
 def described(write_scene):
-    def describe(constraint: str, law: str, state: str, end: int = 2) -> MotionProblem:
+    def describe(constraint: str, law: str, state: str, end: float = 2) -> MotionProblem:
         text = SCENE.format(constraint=constraint, law=law, state=state, end=end)
         return motion_problem(write_scene(text), Request(), Limits())
 
@@ -37,6 +37,28 @@ def described(write_scene):
 def test_zeros_are_those_of_the_law(described):
     problem = described(CIRCLE, "cos(3*t)", "x = 0, y = -1, dot(x) = 0")
     assert zeros_of_controls(problem, laws_of(problem), 0.0, 2.0) == pytest.approx([pi / 6, pi / 2], abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("law", "zeros"),
+    [
+        ("(t - 1)^2", [1]),
+        ("(t - sqrt(2))^2*cos(3*t)", [pi / 6, sqrt(2), pi / 2]),
+        ("1 - cos(9*t)", [2 * pi * k / 9 for k in (1, 2, 3)]),
+        ("(t - sqrt(2))^2 + 10^-9", []),
+    ],
+)
+def test_a_control_that_touches_zero_between_samples_was_taken_for_one_without_zeros(described, law, zeros):
+    problem = described("y - u*x", law, "x = 0, y = 0, dot(x) = 0, dot(y) = 0")
+    assert zeros_of_controls(problem, laws_of(problem), 0.0, 2.1) == pytest.approx(zeros, abs=1e-8)
+
+
+@pytest.mark.parametrize("end", [2, 2.1])
+def test_a_bob_drawn_into_its_hinge_and_out_again_went_on(described, end):
+    """The time span decided: of 2 s, a sample was at the zero of the law."""
+    problem = described(CIRCLE, "(1 - t)^2", "x = 0, y = -1, dot(x) = 0", end)
+    with failing(ErrorKind.NO_GRADIENT, "t = 1,", "lambda1"):
+        simulate(problem, SimulationRequest(samples=FINAL_STATE_ALONE))
 
 
 @pytest.mark.parametrize(
