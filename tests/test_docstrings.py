@@ -85,6 +85,21 @@ def test_public_functions_document_parameters_and_results():
     assert missing == []
 
 
+REFERENCE = re.compile(r"\(see `(\w+)\.(\w+)`\)\.$", re.MULTILINE)
+
+
+def test_a_method_that_refers_to_another_one_for_its_sections_takes_the_same():
+    classes = [
+        each for file in sorted(PACKAGE.rglob("*.py")) for each in parsed(file).body if isinstance(each, ast.ClassDef)
+    ]
+    methods = {(owner.name, each.name): each for owner in classes for each in public_functions([owner])}
+    texts = {place: ast.get_docstring(each) or "" for place, each in methods.items()}
+    found = {place: match.groups() for place, text in texts.items() if (match := REFERENCE.search(text))}
+    assert found
+    assert [place for place, of in found.items() if of[1] != place[1] or of in found] == []
+    assert [place for place, of in found.items() if arguments(methods[place]) != arguments(methods[of])] == []
+
+
 def public_functions(body):
     for node in body:
         public = isinstance(node, ast.ClassDef | ast.FunctionDef) and not node.name.startswith("_")
@@ -100,15 +115,22 @@ def has_no_sections(node):
 
 def undocumented(function):
     """Return what the sections Parameters and Returns of a docstring lack or have in another order."""
-    text, taken = ast.get_docstring(function) or "", function.args
+    text = ast.get_docstring(function) or ""
+    if REFERENCE.search(text):
+        return []
     heads = re.findall(r"^\S.*", section(text, "Parameters"), re.MULTILINE)
     named = [name for head in heads for name in re.findall(r"\w+", head.partition(" : ")[0])]
-    arguments = [*taken.posonlyargs, *taken.args, taken.vararg, *taken.kwonlyargs, taken.kwarg]
-    names = [argument.arg for argument in arguments if argument and argument.arg not in ("self", "cls")]
+    names = arguments(function)
     decorators = {ast.unparse(each) for each in function.decorator_list}
     returns = function.returns and ast.unparse(function.returns) != "None" and not decorators & PROPERTIES
     described = section(text, "Returns") or section(text, "Yields")
     return (names if named != names else []) + (["Returns"] if returns and not described else [])
+
+
+def arguments(function):
+    taken = function.args
+    found = [*taken.posonlyargs, *taken.args, taken.vararg, *taken.kwonlyargs, taken.kwarg]
+    return [argument.arg for argument in found if argument and argument.arg not in ("self", "cls")]
 
 
 def section(text, title):

@@ -88,21 +88,7 @@ class ControlMatrix(SignedFunctions):
             step = step._replace(start=behind)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
-        """Return the determinant of the rows that are watched.
-
-        It is positive at the beginning of the step.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times of the states.
-        states : ndarray, shape (2n, k)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        ndarray, shape (1, k)
-        """
+        """Return the determinant of the chosen rows (see `SignedFunctions.values`)."""
         ((*_, side),) = self._rows
         return side * np.linalg.det(self._matrices(times, states)[:, self._matrix_rows])[None]
 

@@ -207,19 +207,7 @@ class Events(SignedFunctions):
         )
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
-        """Return the expressions whose side is known, each times its sign.
-
-        Parameters
-        ----------
-        times : ndarray, shape (l,)
-            Times of the states.
-        states : ndarray, shape (2n, l)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        ndarray, shape (expressions, l)
-        """
+        """Return expressions of a known side (see `SignedFunctions.values`)."""
         return self._signed(self._evaluate(times, states))
 
     def _with_sides(self, sides: Mapping[str, int]) -> list[tuple[str, int, int]]:

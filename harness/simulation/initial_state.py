@@ -249,35 +249,11 @@ class InitialStatesBySign:
         return FoundStates(states, found)
 
     def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the most corrected datum, as `InitialStates.correction`.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, 1)
-            Open parameters of one motion.
-        states : ndarray, shape (2n, 1)
-            State for these values.
-
-        Returns
-        -------
-        (str, str) or None
-        """
+        """Return the most corrected datum (see `InitialStates.correction`)."""
         return self._in_pattern(self._signs(values)[:, 0]).correction(values, states)
 
     def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the value farthest from its guess, as `InitialStates.moved`.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, 1)
-            Open parameters of one motion.
-        states : ndarray, shape (2n, 1)
-            State for these values.
-
-        Returns
-        -------
-        (str, str) or None
-        """
+        """Return the value farthest from its guess (see `InitialStates.moved`)."""
         return self._in_pattern(self._signs(values)[:, 0]).moved(values, states)
 
     def _in_pattern(self, pattern: Iterable[float]) -> InitialStates:

@@ -79,19 +79,7 @@ class SwitchingFunctions(SignedFunctions):
         self._rows += [(UNIQUE, 0, 1)] * (self._modes.count if self._modes else 0)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
-        """Return the values of the switching functions, negative outside of the pattern.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times of the states.
-        states : ndarray, shape (2n, k)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        ndarray, shape (functions, k)
-        """
+        """Return the switching functions (see `SignedFunctions.values`)."""
         inputs = self._inputs(times, states)
         found = np.reshape([as_floats(function(inputs)[0]) for function in self._functions], (-1, len(times)))
         inside = np.array([side for *_, side in self._rows[: len(found)]], dtype=float)

@@ -141,62 +141,19 @@ class IndependentConstraints(FactoredConstraints):
         )
 
     def length(self, change: Vector) -> Vector:
-        """Return the length of a change by the masses on A's diagonal.
-
-        Parameters
-        ----------
-        change : ndarray, shape (n,)
-            Of coordinates or velocities.
-
-        Returns
-        -------
-        float
-        """
+        """Return the length by A's diagonal (see `FactoredConstraints.length`)."""
         return np.linalg.norm(self._roots * change, axis=-1)
 
     def distances(self, residual: Vector) -> Vector:
-        """Return the distances by the masses on A's diagonal.
-
-        Parameters
-        ----------
-        residual : ndarray, shape (g,)
-            f or df/dt.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """Return distances by A's diagonal (see `FactoredConstraints.distances`)."""
         return np.abs(self._scale * residual)
 
     def correction(self, residual: Vector) -> Vector:
-        """Return the least change by one solve, without refinement.
-
-        Parameters
-        ----------
-        residual : ndarray, shape (g,)
-            f or df/dt.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """Return the change, unrefined (see `FactoredConstraints.correction`)."""
         return self._solved(np.zeros_like(self._roots), residual)[0]
 
     def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations and multipliers, refined until changes are rounding errors.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        accelerations : ndarray, shape (n,)
-        multipliers : ndarray, shape (g,)
-        """
+        """Return the unknowns, refined to rounding (see `FactoredConstraints.unknowns`)."""
         accelerations, multipliers = self._solved(force, curvature)
         last, open_ = np.inf, True
         for _ in range(REFINEMENTS):
@@ -260,31 +217,11 @@ class DependentConstraints(FactoredConstraints):
         self._inverse = v[..., :rank, :] / values[..., :rank, None]
 
     def length(self, change: Vector) -> Vector:
-        """Return the length of a change in the mass metric.
-
-        Parameters
-        ----------
-        change : ndarray, shape (n,)
-            Of coordinates or velocities.
-
-        Returns
-        -------
-        float
-        """
+        """Return the length in the mass metric (see `FactoredConstraints.length`)."""
         return np.linalg.norm(np.vecmat(change, self._weighted.factor), axis=-1)
 
     def distances(self, residual: Vector) -> Vector:
-        """Return the distances in the mass metric.
-
-        Parameters
-        ----------
-        residual : ndarray, shape (g,)
-            f or df/dt.
-
-        Returns
-        -------
-        ndarray, shape (g,)
-        """
+        """Return distances in the mass metric (see `FactoredConstraints.distances`)."""
         return np.abs(self._weighted.scale * residual)
 
     def free_directions(self) -> Matrix:
@@ -297,52 +234,17 @@ class DependentConstraints(FactoredConstraints):
         return self._weighted.unweighted(self._complement.T).T
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
-        """Return accelerations, across Q by the forces and along Q by the constraints.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """Return them across Q and along Q (see `FactoredConstraints.accelerations`)."""
         free = np.vecmat(self._weighted_force(force, curvature), self._complement)
         along = np.matvec(self._basis, self._along(curvature))
         return self._weighted.unweighted(along + np.matvec(self._complement, free))
 
     def correction(self, residual: Vector) -> Vector:
-        """Return the least change, which is along Q.
-
-        Parameters
-        ----------
-        residual : ndarray, shape (g,)
-            f or df/dt.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
+        """Return the change along Q (see `FactoredConstraints.correction`)."""
         return self._weighted.unweighted(np.matvec(self._basis, self._along(residual)))
 
     def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
-        """Return accelerations, and multipliers outside the null space of J^T.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-        curvature : ndarray, shape (g,)
-            c.
-
-        Returns
-        -------
-        accelerations : ndarray, shape (n,)
-        multipliers : ndarray, shape (g,)
-        """
+        """Return unknowns outside J^T's null space (see `FactoredConstraints.unknowns`)."""
         along = self._along(curvature) - np.vecmat(self._weighted_force(force, curvature), self._basis)
         found = self._weighted.scale * np.vecmat(along, self._inverse)
         acting = np.linalg.qr(np.matrix_transpose(self._inverse / self._weighted.scale[..., None, :]))[0]

@@ -100,67 +100,21 @@ class FallbackEngine:
         return self._first.tol
 
     def restart(self, time_point: Any, state: Numbers) -> None:
-        """Continue from another time and state, with the engine that began.
-
-        Parameters
-        ----------
-        time_point : number
-            The new time.
-        state : ndarray, shape (2n,)
-            Coordinates, then velocities.
-        """
+        """Continue with the engine that began (see `Engine.restart`)."""
         self._first.restart(time_point, state)
         self._current, self._begun = self._first, float(time_point)
         self._why_first = self._reason_for_first()
 
     def advance(self, until: Any) -> None:
-        """Integrate to a time, each engine at its fastest.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Raises
-        ------
-        HolonomError
-            The motion cannot be continued so far by the engines allowed.
-        """
+        """Integrate to a time, each engine at its fastest (see `Engine.advance`)."""
         deque(self._segments_until(until, _without_steps), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Integrate to a time, step by step.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Returns
-        -------
-        iterator of Step
-
-        Raises
-        ------
-        HolonomError
-            As `advance`.
-        """
+        """Integrate to a time, step by step (see `Engine.integrate`)."""
         return self._segments_until(until, _with_steps)
 
     def solutions(self, times: Numbers, states: Numbers) -> Solutions:
-        """Return the unknowns of the equations of motion, by the engine of those times.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times that the motion has passed.
-        states : ndarray, shape (2n, k)
-            States at these times.
-
-        Returns
-        -------
-        Solutions
-        """
+        """Return the unknowns by the engine of those times (see `Engine.solutions`)."""
         second = self._second
         if second is None:
             return self._first.solutions(times, states)

@@ -61,7 +61,7 @@ class Integrator(Protocol):
     state: Numbers  # shape (2n,): at that time, in place
     tol: Any
 
-    def propagate_until(self, until: Any, max_steps: int, **bound: Any) -> tuple[Any, ...]:
+    def propagate_until(self, until: Any, max_steps: int, **options: Any) -> tuple[Any, ...]:
         """Take steps to a time, up to a number of steps, or to a failure.
 
         A step that is cut at the last time counts neither as the shortest nor as the longest.
@@ -72,8 +72,8 @@ class Integrator(Protocol):
             Last time.
         max_steps : int
             Largest number of steps.
-        **bound : object
-            Of the length of a step, as the integrator takes it.
+        **options : object
+            Those of the integrator, such as a bound of the length of a step.
 
         Returns
         -------
@@ -136,53 +136,17 @@ class ProgramEngine:
         return self._known_matrices or MotionMatrices(self._problem)
 
     def restart(self, time_point: Any, state: Numbers) -> None:
-        """Continue from another time and state.
-
-        Parameters
-        ----------
-        time_point : number
-            The new time.
-        state : ndarray, shape (2n,)
-            Coordinates, then velocities.
-        """
+        """Continue from another time and state (see `Engine.restart`)."""
         self._go_back(time_point, state)
         self._behind_obstruction = self._obstruction is not None
         self._usual, self._obstruction = 0.0, None
 
     def advance(self, until: Any) -> None:
-        """Integrate to a time, in the numbers of the precision.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Raises
-        ------
-        Obstruction
-            The motion program fails ahead, while pivots may continue. Time and state are those before it does.
-        HolonomError
-            The motion itself ends.
-        """
+        """Integrate until the motion program fails (see `Engine.advance`)."""
         deque(self._blocks(until, dense=False), maxlen=0)
 
     def integrate(self, until: Any) -> Iterator[Step]:
-        """Integrate to a time, with states between the steps.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Returns
-        -------
-        iterator of Step
-
-        Raises
-        ------
-        Obstruction, HolonomError
-            As `advance`.
-        """
+        """Integrate with states between the steps (see `Engine.integrate`)."""
         return self._blocks(until, dense=True)
 
     def _blocks(self, until: Any, dense: bool) -> Iterator[Step]:
@@ -194,19 +158,7 @@ class ProgramEngine:
             require_reach(self.steps - steps, self.time - begun, until - self.time)
 
     def solutions(self, times: Numbers, states: Numbers) -> Solutions:
-        """Return the unknowns of the equations of motion at times and states.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times of the states.
-        states : ndarray, shape (2n, k)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        Solutions
-        """
+        """Return the unknowns by the motion program (see `Engine.solutions`)."""
         n, g = len(self._problem.coordinates), len(self._problem.multipliers)
         if self._evaluate is None:
             begun = time.perf_counter()

@@ -96,22 +96,7 @@ class RobustEngine:
 
     @classmethod
     def for_motion(cls, task: Task) -> "RobustEngine":
-        """Return the engine of a motion.
-
-        Parameters
-        ----------
-        task : Task
-            The motion, the request and the numbers.
-
-        Returns
-        -------
-        RobustEngine
-
-        Raises
-        ------
-        HolonomError
-            The precision is not double, or the tolerance is outside of the engine's range.
-        """
+        """Return the engine in double precision (see `Engine.for_motion`)."""
         tol = task.request.tol
         if task.precision.name != "double":
             raise HolonomError(
@@ -127,15 +112,7 @@ class RobustEngine:
         return cls(task.problem, tol, task.matrices, task.request.max_step)
 
     def restart(self, time_point: float, state: Vector) -> None:
-        """Continue from another time and state.
-
-        Parameters
-        ----------
-        time_point : float
-            The new time.
-        state : ndarray, shape (2n,)
-            Coordinates, then velocities.
-        """
+        """Continue from another time and state (see `Engine.restart`)."""
         self._collocation: Collocation | None = None
         self.rank, until_singular = probed(self.matrices, time_point, state)
         if until_singular == 0:
@@ -146,39 +123,12 @@ class RobustEngine:
             self._vanishing = time_point + until_singular
 
     def advance(self, until: float) -> None:
-        """Integrate to a time.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-
-        Raises
-        ------
-        HolonomError
-            The motion cannot be continued so far.
-        """
+        """Integrate to a time (see `Engine.advance`)."""
         for _ in self.integrate(until):
             pass
 
     def integrate(self, until: float) -> Iterator[Step]:
-        """Integrate to a time, step by step.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-
-        Yields
-        ------
-        Step
-            Its states are available only until the next step.
-
-        Raises
-        ------
-        HolonomError
-            As `advance`.
-        """
+        """Integrate to a time, step by step (see `Engine.integrate`)."""
         steps, begun = self.steps, self.time
         while self.time < until:
             yield (
@@ -196,19 +146,7 @@ class RobustEngine:
         return self._collocation is not None or self._vanishing - self.time <= REACH * self._solver.h_abs
 
     def solutions(self, times: Vector, states: Matrix) -> Solutions:
-        """Return the unknowns of the equations of motion at several times.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times of the states.
-        states : ndarray, shape (2n, k)
-            They satisfy the constraints.
-
-        Returns
-        -------
-        Solutions
-        """
+        """Return the unknowns of states on the constraints (see `Engine.solutions`)."""
         at = self.matrices(times, states.T)
         singular_values = weighted_constraints(at.mass, at.jacobian).singular_values()
         ranks = np.array([min(self.rank, rank_of(each, UNTRUSTED)) for each in singular_values])

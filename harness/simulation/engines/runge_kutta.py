@@ -112,22 +112,7 @@ class RungeKuttaEngine(ProgramEngine):
 
     @classmethod
     def for_motion(cls, task: Task) -> "RungeKuttaEngine":
-        """Return the engine of a motion.
-
-        Parameters
-        ----------
-        task : Task
-            The motion, the request and the numbers.
-
-        Returns
-        -------
-        RungeKuttaEngine
-
-        Raises
-        ------
-        HolonomError
-            The precision is not double, or as for the class.
-        """
+        """Return the engine in double precision (see `Engine.for_motion`)."""
         problem, request, precision, end, matrices = task
         if precision.name != "double":
             raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
@@ -136,51 +121,20 @@ class RungeKuttaEngine(ProgramEngine):
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Return True if it holds the tolerance and can be compiled here.
-
-        Parameters
-        ----------
-        tol : float or None
-            Tolerance of a step, or None if none is requested.
-
-        Returns
-        -------
-        bool
-        """
+        """Return True if C compiles it and holds it (see `Engine.comparable`)."""
         return tol is not None and FINEST <= tol < 1 and has_compiler()
 
     @classmethod
     def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
-        """Return the expected time of compilation and steps.
-
-        Parameters
-        ----------
-        steps, operations, tol, dense : int, int, float, bool
-            As for `quicker_engine`.
-
-        Returns
-        -------
-        float
-            In seconds.
-        """
+        """Return the time of compilation and steps (see `Engine.expected_seconds`)."""
         taken = STRIDE * steps * (REFERENCE / tol) ** (1 / ORDER) * (DENSER if dense else 1.0)
         begun, each = COMPILER
         return begun + each * operations + taken * (STEP + STAGES * operations)
 
     def advance(self, until: float) -> None:
-        """Integrate to a time, in one call of C if possible.
+        """Integrate to a time, in one call of C if possible (see `Engine.advance`).
 
         This is possible for a near time without an obstruction before it.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-
-        Raises
-        ------
-        Obstruction, HolonomError
-            As `ProgramEngine.advance`.
         """
         integrator = self._integrator
         self._set_values()

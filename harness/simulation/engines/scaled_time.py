@@ -134,22 +134,7 @@ class ScaledTime:
         return self._inner.tc / self.sizes[:, None]
 
     def propagate_until(self, until: float, max_steps: int, **options: Any) -> tuple[Any, ...]:
-        """Take steps as heyoka's integrators do.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-        max_steps : int
-            Largest number of steps.
-        **options : object
-            Those of heyoka.
-
-        Returns
-        -------
-        tuple
-            Outcome, shortest and longest step, number of steps, then heyoka's further results.
-        """
+        """Take steps as heyoka does (see `Integrator.propagate_until`)."""
         bound = {name: options[name] / self._unit for name in ("max_delta_t",) if name in options}
         self._inner.state[:] = self.state * self.sizes
         outcome, shortest, longest, *others = self._inner.propagate_until(

@@ -112,22 +112,7 @@ class TaylorEngine(ProgramEngine):
 
     @classmethod
     def for_motion(cls, task: Task) -> "TaylorEngine":
-        """Return the engine of a motion.
-
-        Parameters
-        ----------
-        task : Task
-            The motion, the request and the numbers.
-
-        Returns
-        -------
-        TaylorEngine
-
-        Raises
-        ------
-        HolonomError
-            The precision cannot hold the tolerance, or as for the class.
-        """
+        """Return the engine in any precision (see `Engine.for_motion`)."""
         problem, request, precision, end, matrices = task
         digits = (
             precision.digits + GUARD_DIGITS
@@ -141,33 +126,12 @@ class TaylorEngine(ProgramEngine):
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
-        """Return True: the engine may be chosen for every tolerance.
-
-        Parameters
-        ----------
-        tol : float or None
-            Tolerance of a step, or None if none is requested.
-
-        Returns
-        -------
-        bool
-        """
+        """Return True for every tolerance (see `Engine.comparable`)."""
         return True
 
     @classmethod
     def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
-        """Return the expected time with the code that is worthwhile for the steps.
-
-        Parameters
-        ----------
-        steps, operations, tol, dense : int, int, float, bool
-            As for `quicker_engine`.
-
-        Returns
-        -------
-        float
-            In seconds.
-        """
+        """Return the time with worthwhile code (see `Engine.expected_seconds`)."""
         run = {code: running(code, operations, steps, tol) for code in Code}
         compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
         return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
@@ -241,15 +205,7 @@ class TaylorEngine(ProgramEngine):
         return (outcome, shortest, longest, len(dense_steps)), dense_steps
 
     def restart(self, time_point: Any, state: Numbers) -> None:
-        """Continue from another time and state.
-
-        Parameters
-        ----------
-        time_point : number
-            The new time.
-        state : ndarray, shape (2n,)
-            Coordinates, then velocities.
-        """
+        """Continue from another time and state (see `Engine.restart`)."""
         super().restart(time_point, state)
         if time_point <= self._counted[0]:
             self._counted = time_point, self.steps
