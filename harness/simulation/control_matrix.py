@@ -9,6 +9,7 @@ import numpy as np
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.precision import Precision
+from .constraints.directions import or_one
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
 from .inputs import Inputs
@@ -107,8 +108,7 @@ class ControlMatrix(SignedFunctions):
         self._scale = 1.0
         matrices = self._matrices(at, step.states(at))
         matrices = np.where(np.isfinite(matrices).all(axis=(1, 2), keepdims=True), matrices, 1.0)
-        sizes = np.max(np.abs(matrices), axis=(0, 2))[:, None]
-        self._scale = np.where(sizes > 0, sizes, 1.0)
+        self._scale = or_one(np.max(np.abs(matrices), axis=(0, 2))[:, None])
         first = matrices[0] / self._scale
         self._matrix_rows = np.sort(qr(first.T, mode="r", pivoting=True)[1][: self._shape[1]])
         side = -1 if np.linalg.det(first[self._matrix_rows]) < 0 else 1

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.motion_program import Program, names_in
+from ..program.motion_program import Program, names_used
 from ..program.precision import Precision
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
@@ -94,9 +94,7 @@ def values_in(mode: "Mode", program: Program, precision: Precision) -> Values:
     """
     problem = mode.problem
     inputs, evaluate = Inputs(problem, precision), evaluation_once(problem, program, precision)
-    used = set().union(*(names_in(value) for _, value in program.assignments))
-    used |= set().union(*map(names_in, program.outputs.values()))
-    solutions = mode.engine.solutions if used & set(problem.multipliers) else None
+    solutions = mode.engine.solutions if names_used(program) & set(problem.multipliers) else None
 
     def values(times: Numbers, states: Numbers) -> Numbers:
         multipliers = None if solutions is None else solutions(times, states).multipliers

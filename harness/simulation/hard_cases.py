@@ -141,12 +141,8 @@ def stiffness(at: MotionState) -> float:
         From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
         free, in the mass metric.
     """
-    factored = DependentConstraints(at.here.mass, at.here.jacobian)
-    free = factored.free_directions()
-    if not free.size:
-        return 1.0
-    change = _free_changes(at, factored, free, np.concatenate([free, np.zeros_like(free)]))
-    if not np.isfinite(change).all():
+    change = _free_changes(at)
+    if change is None:
         return 1.0
     squares = np.abs(np.linalg.eigvals(change))
     moving = squares[squares > AT_REST * squares.max()]
@@ -167,14 +163,10 @@ def fastest_decay(at: MotionState) -> float:
         Per unit of time, zero if no decay rate exceeds its frequency. It follows from the derivatives of the
         accelerations with respect to coordinates and velocities.
     """
-    factored = DependentConstraints(at.here.mass, at.here.jacobian)
-    free = factored.free_directions()
-    if not free.size:
+    change = _free_changes(at, velocities=True)
+    if change is None:
         return 0.0
-    nothing, one = np.zeros_like(free), np.eye(free.shape[1])
-    change = _free_changes(at, factored, free, np.block([[free, nothing], [nothing, free]]))
-    if not np.isfinite(change).all():
-        return 0.0
+    one = np.eye(len(change))
     exponents = np.linalg.eigvals(np.block([[0 * one, one], [change]]))
     return float(-exponents.real[-exponents.real >= np.abs(exponents.imag)].min(initial=0.0))
 
@@ -184,12 +176,17 @@ def _is_slowed(start: MotionState, end: MotionState, steps: int) -> bool:
     return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
-def _free_changes(at: MotionState, factored: DependentConstraints, free: Matrix, moves: Matrix) -> Matrix:
-    """Return derivatives of accelerations in the free directions F, along moves.
+def _free_changes(at: MotionState, velocities: bool = False) -> Matrix | None:
+    """Return finite derivatives of accelerations in the free directions F, or None.
 
-    They have shape (n - r, k), the moves (2n, k). As J F = 0, the derivative of A a - J^T lambda = h gives
-    F^T A da = F^T d(h - A a + J^T lambda), a and lambda unchanged on the right.
+    They are those along the same directions of the coordinates, then of the velocities. As J F = 0, the derivative of
+    A a - J^T lambda = h gives F^T A da = F^T d(h - A a + J^T lambda), a and lambda unchanged on the right.
     """
+    factored = DependentConstraints(at.here.mass, at.here.jacobian)
+    free = factored.free_directions()
+    if not free.size:
+        return None
+    moves = np.kron(np.eye(2)[:, : 1 + velocities], free)
     found = factored.unknowns(at.here.force, at.here.curvature)
     lengths = DIFFERENCE / np.max(np.abs(moves) / at.matrices.nominal.state[:, None], axis=0)
     steps = (lengths * moves).T
@@ -197,7 +194,8 @@ def _free_changes(at: MotionState, factored: DependentConstraints, free: Matrix,
         at.matrices.unbalanced(at.t, at.state + some, *found) - at.matrices.unbalanced(at.t, at.state - some, *found)
         for some in np.array_split(steps, -(-len(steps) // AT_ONCE))
     ]
-    return free.T @ np.concatenate(changes, axis=1) / (2 * lengths)
+    change = free.T @ np.concatenate(changes, axis=1) / (2 * lengths)
+    return change if np.isfinite(change).all() else None
 
 
 def _mass_ratio(at: Matrices, sizes: Vector) -> float:

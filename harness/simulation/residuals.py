@@ -9,7 +9,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .constraints.directions import weighted_constraints
+from .constraints.directions import or_one, weighted_constraints
 from .evaluation import Numbers
 from .matrices import Matrices, Vector
 from .nominal import Nominal
@@ -116,7 +116,7 @@ def scaled_residual(residual: Numbers, jacobian: Numbers, moved: Numbers, sizes:
     sizes = sizes if np.ndim(sizes) == moved.ndim else sizes[:, None]
     jacobian, moved = jacobian * sizes, moved / sizes
     gradients = np.max(np.abs(jacobian), axis=1, initial=0.0)
-    peaks = np.where(gradients > 0, gradients, 1.0)
+    peaks = or_one(gradients)
     lengths = np.maximum(1.0, np.linalg.norm(jacobian / peaks[:, None], axis=1))
     left = np.max(np.abs(residual) / peaks / lengths, axis=0, initial=0.0)
     return left / np.maximum(1.0, np.max(np.abs(moved), axis=0, initial=0.0))

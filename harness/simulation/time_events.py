@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_problem import DependsOn, MotionProblem
-from ..program.motion_program import Constant, Operation, Program, names_in
+from ..program.motion_program import Constant, Operation, Program, names_used
 from ..program.rewriting import computing
 from ..program.sign_pattern import program_with_values
 
@@ -59,10 +59,7 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
 
 def _affine(program: Program) -> Affine | None:
     """Return the one output of a program as an affine function of t, or None."""
-    used = set().union(
-        *(names_in(expression) for _, expression in program.assignments), *map(names_in, program.outputs.values())
-    )
-    if used & set(program.inputs) - {"t"}:
+    if names_used(program) & set(program.inputs) - {"t"}:
         return None
     try:
         (value,) = run_program(program, {"t": Affine(Fraction(0), Fraction(1))}, AFFINE).values()

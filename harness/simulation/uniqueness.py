@@ -8,6 +8,7 @@ import numpy as np
 
 from ..program.motion_problem import MotionProblem
 from ..program.precision import read_precision
+from .constraints.directions import or_one
 from .evaluation import as_floats, evaluation_once
 from .hard_cases import MotionState
 from .inputs import Inputs
@@ -38,8 +39,7 @@ def undetermined_outputs(
     """
     if problem.outputs is None or not problem.dependent or not len(multipliers) or not at.here.finite:
         return ()
-    lengths = np.linalg.norm(at.here.jacobian, axis=1)
-    weights = 1 / np.where(lengths > 0, lengths, 1.0)
+    weights = 1 / or_one(np.linalg.norm(at.here.jacobian, axis=1))
     _, sizes, right = np.linalg.svd(at.here.jacobian.T * weights)
     rank = np.count_nonzero(sizes > NO_FORCE * sizes.max(initial=0.0))
     free = weights[:, None] * right[rank:].T  # shape (g, k): the mu

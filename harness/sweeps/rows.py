@@ -23,6 +23,7 @@ from ..program.motion_program import Expression, Name, Operation, Program, calls
 from ..program.precision import read_precision
 from ..program.rewriting import computing
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
+from ..simulation.constraints.directions import or_one
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors
 from ..simulation.initial_state import initial_states_of, started
@@ -320,8 +321,7 @@ class RowMaker:
         if fields:
             sizes = [largest_size(along) for along in fields]
             reactions, others = sizes[: len(self._free[0])], sizes[len(self._free[0]) :]
-            forces = np.max(others, axis=0, initial=0.0)
-            forces = np.where(forces > 0, forces, 1.0)
+            forces = or_one(np.max(others, axis=0, initial=0.0))
             free = np.max(reactions, axis=0, initial=0.0) <= MARGIN * self.plan.tol * forces
             yield free.astype(float), np.all([along.resolved(forces) for along in fields], axis=0)
 
