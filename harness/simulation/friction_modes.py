@@ -37,11 +37,31 @@ class Solution(NamedTuple):
     sizes: Vector  # of the largest terms of drives, then of the sizes of amounts
 
     def accelerates_as(self, other: "Solution") -> bool:
-        """Return True if the drives are those of another solution."""
+        """Return True if the drives are those of another solution.
+
+        Parameters
+        ----------
+        other : Solution
+            Solution at the same state.
+
+        Returns
+        -------
+        bool
+        """
         return _close(self.drives, other.drives, self.sizes[: len(self.drives)])
 
     def is_shared_as(self, other: "Solution") -> bool:
-        """Return True if the amounts of friction are those of another solution."""
+        """Return True if the amounts of friction are those of another solution.
+
+        Parameters
+        ----------
+        other : Solution
+            Solution at the same state.
+
+        Returns
+        -------
+        bool
+        """
         return _close(self.amounts, other.amounts, self.sizes[len(self.drives) :])
 
 
