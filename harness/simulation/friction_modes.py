@@ -1,11 +1,11 @@
 """Modes of friction at a state, and which of them the accelerations agree with.
 
-At a zero of a switching function its sign is 1, -1, or lets the motion slide on the surface. In each mode the amounts
-of friction satisfy linear equations (`harness/program/friction.py`). A mode agrees if a sliding amount is at most as
-large as its size, if drives lead to the side of the sign, and if multipliers have the signs that forces contain.
+At a zero of a switching function its sign is 1, -1, or lets the motion slide. In each mode the amounts of
+friction satisfy linear equations (`harness/program/friction.py`). A mode agrees if a sliding amount is at most as large
+as its size, if drives lead to the side of the sign, and if multipliers have the signs that forces contain.
 
 The accelerations are unique if one solution agrees. They remain so while the determinants of all modes are positive:
-a piecewise linear map whose pieces have determinants of one sign is proper, and its degree, the number of solutions, is
+a piecewise linear map whose parts have determinants of one sign is proper, and its degree, the number of solutions, is
 the same for all right sides and under continuous changes (Scholtes, Introduction to Piecewise Differentiable Equations,
 section 2.3).
 """
@@ -203,7 +203,7 @@ class FrictionModes:
 
 
 def modes_that_may_agree(problem: MotionProblem, pattern: Pattern, precision: Precision) -> FrictionModes | None:
-    """Return the modes at the surfaces on which a motion slides.
+    """Return the modes at the switching surfaces on which a motion slides.
 
     Parameters
     ----------
