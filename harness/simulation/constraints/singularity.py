@@ -412,7 +412,7 @@ def _sign_changes(function: Evaluation, grid: Vector, values: Numbers) -> Vector
     signs = np.sign(values)
     controls, places = np.nonzero(signs[:, :-1] * signs[:, 1:] < 0)
     left, right = grid[places], grid[places + 1]
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS if len(places) else 0):
         middle = (left + right) / 2
         same = np.sign(function(middle)[controls, np.arange(len(places))]) == signs[controls, places]
         left, right = np.where(same, middle, left), np.where(same, right, middle)
@@ -430,7 +430,7 @@ def _touched(function: Evaluation, grid: Vector, values: Numbers) -> Vector:
     least = (size <= np.minimum(before, after)) & (size < largest)
     controls, places = np.nonzero(least & ~changes[:, :-1] & ~changes[:, 1:])
     left, right, row = grid[places], grid[places + 2], np.arange(len(places))
-    for _ in range(HALVINGS):
+    for _ in range(HALVINGS if len(places) else 0):
         third = (right - left) / 3
         low, high = (np.abs(function(t)[controls, row]) for t in (left + third, right - third))
         left, right = np.where(low > high, left + third, left), np.where(low > high, right, right - third)
