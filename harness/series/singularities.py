@@ -4,7 +4,7 @@ A motion can be singular if a divisor of its program, or an argument of a root o
 are continued along the power series into the complex plane of the time, and their zeros are found by Newton's method.
 A zero counts if the result of the program is singular there: on a small circle around it a Laurent expansion has
 negative powers, and a shorter series gives the same ones. This also finds singularities that are too weak to affect
-the coefficients.
+the coefficients. Where the powers depend on the length of the series, the motion itself is continued around the zero.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -30,6 +30,7 @@ from ..program.motion_program import (
     names_used,
 )
 from ..program.rewriting import computing
+from .continuation import ends_at
 from .radius import COARSE, COMPLEX_PAIR, REAL_TIME, TOO_FEW, UNDECIDED, Radius
 
 MOST_WORK = 40_000  # operations times critical functions beyond which nothing is looked for
@@ -40,6 +41,7 @@ CLOSE = 1e-6  # relative distance of two zeros that are one
 CONVERGED = 1e-7
 REFINEMENTS, REFINED = 12, 1e-10  # steps in many digits, and the last of them, relative to a zero
 DIGITS, CIRCLE, POINTS = 60, mpmath.mpf("1e-3"), 32  # of the test on a circle around a zero
+SETTLED = 1e-3  # relative change of a negative power by a shorter series, below which it is one of the motion
 WEAKEST = mpmath.mpf("1e-25")  # of an output on that circle: a negative power that is none
 ROUNDED = mpmath.mpf("1e-45")  # of the largest output on that circle: one that is rounding
 TRUNCATED = 1e-3  # largest relative size of the last terms at which a series represents the motion
@@ -76,7 +78,9 @@ def decided(radius: Radius, series: Sequence[Sequence[mpmath.mpf]], program: Pro
     bound = REACH if radius.estimate is None else radius.estimate + radius.uncertainty
     zeros = sorted(_zeros(program, series, t0, bound), key=lambda zero: abs(zero.place))[:MOST_TESTED]
     for zero in zeros:
-        if abs(zero.place) <= bound and _is_singular(program, series, t0, zero.place):
+        others = (abs(each.place - zero.place) for each in zeros)
+        width = min((apart / 2 for apart in others if apart > CLOSE * abs(zero.place)), default=np.inf)
+        if abs(zero.place) <= bound and _is_singular(program, series, t0, zero.place, width):
             found = _refined(zero, series, t0)
             if _depends_on_state(program):
                 if radius in UNTOLD:
@@ -334,13 +338,26 @@ def _multiple_zero(evaluate: Evaluate, place: complex) -> Any:
     return None
 
 
-def _is_singular(program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex) -> bool:
-    """Return True if a program is singular at a zero of a critical function."""
+def _is_singular(
+    program: Program, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf, zero: complex, width: float
+) -> bool:
+    """Return True if a program is singular at a zero of a critical function.
+
+    No other zero is nearer to it than the width.
+    """
     with mpmath.workdps(DIGITS):
         shorter = [row[: int(len(row) * SHORTER)] for row in series]
         found, others = (_negative_powers(program, rows, t0, mpmath.mpc(zero)) for rows in (series, shorter))
         pairs, least = zip(found, others, strict=True), ROUNDED * max(size for _, size in found)
-        return any(a > max(least, WEAKEST * size) and abs(a - b) < a / 2 for (a, size), (b, _) in pairs)
+        if any(a > max(least, WEAKEST * size) and abs(a - b) < SETTLED * a for (a, size), (b, _) in pairs):
+            return True
+
+    def outputs(z: complex, state: np.ndarray) -> np.ndarray:
+        found = run_program(program, dict(zip(program.inputs, [float(t0) + z, *state], strict=True)), COMPLEX)
+        return np.array(list(found.values()), dtype=complex)
+
+    start = np.array([complex(row[k]) for k in range(2) for row in series])
+    return ends_at(outputs, start, zero, width)
 
 
 def _negative_powers(

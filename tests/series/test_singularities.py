@@ -77,6 +77,26 @@ def test_removable_zero_of_a_divisor_is_no_singularity():
     assert not found.located
 
 
+APPARENT = """
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = {a}*dot(x)^2/2 + {b}*dot(y)^2/2,
+  potential_energy = {g}*y + {k}*x^2/2, constraints = [y - u*x])$
+motion : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = {x}, dot(x) = {v}])$
+"""
+
+
+@pytest.mark.parametrize(
+    ("values", "law", "order", "true"),  # true: the zeros of a + b u^2
+    [
+        ("9/16 21/8 -1/16 1/8 13/16 13/16", "-3/4 + 13/8/(17/16 + t)", 30, 1.0928311),
+        ("9/4 29/16 3/8 7/8 11/16 1/2", "3/4/(t - 2)", 45, 2.1102429),
+    ],
+)
+def test_pole_of_a_law_at_which_the_motion_is_regular_was_its_singularity(values, law, order, true):
+    """In y the equation of motion is regular where u is infinite, before the radius."""
+    found = radius(APPARENT.format(law=law, **dict(zip("abgkxv", values.split(), strict=True))), order=order)
+    assert found.estimate == pytest.approx(true, rel=1e-7)
+
+
 def test_pole_of_the_motion_alone_is_estimated_and_marked():
     found = radius(ONE.format(force="6*x^2", x=1, v=2))
     assert not found.located
