@@ -21,7 +21,7 @@ from ..program.motion_program import Program
 from ..schema import NumberText
 from ..shown import Shown
 from ..structs import entry, with_attributes
-from .radius import POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
+from .radius import LINEAR, POLYNOMIAL, UNPROVED, Radius, described, estimate_radius, truncation_error
 
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
 MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
@@ -78,10 +78,13 @@ class MotionSeries(Shown):
     @cached_property
     def radius(self) -> Radius:
         """Radius of convergence about t0."""
+        from .entire import is_entire
         from .singularities import decided
 
         if self.polynomial and not self.sensitivities:
             return replace(POLYNOMIAL, coefficients=self.order + 1)
+        if self.program is not None and is_entire(self.program, self.program.inputs[1:]):
+            return replace(LINEAR, coefficients=self.order + 1)
         with mpmath.workdps(self.digits):
             found = estimate_radius([numbers(series) for _, series in self.all_series()])
             found = replace(found, note=UNPROVED.note) if found == POLYNOMIAL else found

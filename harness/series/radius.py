@@ -6,10 +6,11 @@ Near a singularity, or a complex pair of them, the coefficients approach a three
 
 and the singularities z = t - t0 satisfy 1 + p_0 z + s_0 z^2 = 0. Without corrections, and from two such equations,
 this is Mercer and Roberts' test. Here the corrections are fitted over the later orders, which extrapolates that test
-to n = infinity, and Domb and Sykes' with it if there is a single singularity. Two more terms distinguish two pairs.
+to n = infinity, and Domb and Sykes' with it if there is a single singularity. Further terms distinguish several.
 Each number of corrections gives an estimate. Those that agree best with their neighbours are taken, and their
-difference, times a factor of safety, is the uncertainty. If they do not agree, the root test is used: |c_n| falls
-like R^-n at a finite radius R, and faster by some power of n! if the motion is entire.
+difference, times a factor of safety, is the uncertainty, but at least the distance of a nearer, weaker singularity
+that such a difference hides. If they do not agree, the root test is used: |c_n| falls like R^-n at a finite radius R,
+and faster by some power of n! if the motion is entire. What contradicts it is open.
 
 A series in even or in odd powers alone is one in the square of the time: its singularities come in pairs ±z.
 
@@ -25,7 +26,6 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
 import mpmath
@@ -34,22 +34,23 @@ from ..language import Message, translatable
 from ..schema import PAIRS
 from ..structs import entry
 
-LAGS = (1, 2, 4)  # singularities that a recurrence knows
+LAGS = (1, 2, 3, 4)  # singularities that a recurrence knows
 FEWEST = 12  # fewest coefficients from which a radius is estimated
 MOST_CORRECTIONS = 5
 LAST = 4  # coefficients of which the largest is brought to the order of one
 LATER = (0.5, 0.7)  # shares of the orders after which a fit looks
 EQUATIONS_PER_UNKNOWN = 1.2
 # How wrong N orders can be, and the factor of safety, come from expansions to orders 8 to 160 whose end is known: those
-# of tests/motion/test_radius.py and more of their kind.
+# of tests/series/test_radius.py and more of their kind.
 ENTIRE_GROWTH, GROWTH_ERROR = 0.25, 24.0  # the power of n! is above 1/4 + 24/N: entire
 FINITE_GROWTH = 4.0  # it is below 4/N: a finite radius
 ROOT_TEST_ERROR = 12.0  # of log R, times N
 NEGLIGIBLE = 1e-13  # relative to its neighbours: the rounding of a zero in double precision
 SAFETY = 12.0  # times the difference of two estimates: the uncertainty
 FARTHER = 1.2  # a singularity farther away by this factor still shows, as its power -N, in the last of N coefficients
+WEAKER = 2.5  # the power of the orders by which a nearer singularity may be weaker, as sqrt(1 - t)^3 is than 1/(2 - t)
 FINEST = 1e-12  # relative uncertainty that a fit in double precision can have
-COARSE = 0.1  # relative uncertainty that a fit may have
+COARSE = 0.2  # relative uncertainty that a fit may have
 SMALLEST = 1e-290  # with its reciprocal: sizes between which double precision has all its digits
 DEPENDENT = 1e-13  # of the largest pivot: columns that differ by rounding only
 
@@ -84,6 +85,9 @@ class Radius:
 NEARER = 0.9  # of the estimate: where a weak singularity may hide
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
+LINEAR = Radius(
+    None, None, (), translatable("infinite: the equations of motion are linear, and their coefficients are entire")
+)
 UNPROVED = Radius(None, None, (), translatable("unknown: no higher powers occur, and that none follow is not proved"))
 ENTIRE = Radius(
     None,
@@ -297,8 +301,8 @@ def _radii_of_strided(scale: Floats, balanced: Floats, stride: int) -> list[_Row
     for g, roots, fit in zip(growth, by_roots, fitted, strict=True):
         if g > ENTIRE_GROWTH + GROWTH_ERROR / last:
             found.append(ENTIRE)
-        elif fit is not None and fit.uncertainty <= COARSE * fit.estimate and _agree(fit, roots):
-            found.append(fit)
+        elif fit is not None and fit.uncertainty <= COARSE * fit.estimate:
+            found.append(fit if _agree(fit, roots) else UNDECIDED)
         else:
             found.append(roots if g < FINITE_GROWTH / last and roots.uncertainty < roots.estimate else UNDECIDED)
     return [_Row(radius, roots.estimate) for radius, roots in zip(found, by_roots, strict=True)]
@@ -374,7 +378,7 @@ def _root_tests(n: NDArray[np.int64], logarithms: Floats, stride: int, scale: Fl
 def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius | None]:
     """Return the estimates of the recurrences that agree best.
 
-    They are compared with those of fewer corrections and of other orders.
+    They are compared with those of fewer and more corrections, and of other orders.
     """
     import numpy as np
 
@@ -384,11 +388,12 @@ def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius |
     differences = np.array([difference for difference, _ in choices])
     best = np.argmin(np.where(np.isnan(differences), np.inf, differences), axis=0)
     unseen = FARTHER ** (stride * (1 - balanced.shape[1]))
-    found = []
+    found, last = [], balanced.shape[1] - 1
     for row, choice in enumerate(best.tolist()):
         roots, difference = choices[choice][1][row], float(differences[choice, row])
         nearest = float(abs(roots[0]))
-        spread = (SAFETY * difference / nearest + unseen + FINEST) / stride
+        spread = SAFETY * difference / nearest + FINEST
+        spread = max(spread + unseen, (WEAKER * math.log(last) + math.log(spread)) / last) / stride
         singularities = [_in_time(root, stride, scale[row]) for root in roots if abs(root) <= nearest * (1 + spread)]
         found.append(
             _radius(nearest ** (1 / stride) * float(scale[row]), spread, [z for group in singularities for z in group])
@@ -399,7 +404,8 @@ def _fitted_radii(balanced: Floats, stride: int, scale: Floats) -> list[Radius |
 def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np.complex128]]]:
     """Return distances of estimates, and roots, for each number of corrections.
 
-    The distance is that from the estimates with one correction less.
+    The distance is that from the estimates with one correction less, and with one more: two neighbours alone agree
+    by chance on a farther, stronger singularity.
 
     Returns
     -------
@@ -415,8 +421,8 @@ def _compared_fits(balanced: Floats, lags: int) -> list[tuple[Floats, NDArray[np
     fits = [_recurrence_roots(balanced, lags, n, most) for n in orders]
     nearest = [[np.abs(roots[:, 0]) for roots in each] for each in zip(*fits, strict=True)]
     return [
-        (np.ptp([*fewer, *these], axis=0), fits[-1][corrections])
-        for corrections, (fewer, these) in enumerate(pairwise(nearest), start=1)
+        (np.ptp(np.concatenate(nearest[corrections - 1 : corrections + 2]), axis=0), fits[-1][corrections])
+        for corrections in range(1, len(nearest))
     ]
 
 

@@ -11,12 +11,15 @@ from numpy.typing import NDArray
 from ..program.arithmetic import run_program
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka
 from ..program.motion_problem import MotionProblem, require_expandable
-from ..series.radius import ENTIRE, POLYNOMIAL, Radius, estimate_radii
+from ..program.rewriting import computing
+from ..series.entire import is_entire
+from ..series.radius import Radius, estimate_radii
 from ..series.singularities import COMPLEX
 from ..simulation.inputs import heyoka_inputs, named_inputs
 
 ORDER = 40
 ELEMENTS = 8
+DETERMINED = 0.05  # relative uncertainty of a radius that is recorded
 PROBES = np.array([0.3, 0.7, 1.1, 2.3])  # complex times, by size and direction, where a polynomial is tried
 SATISFIED = 1e-9  # of an acceleration there: what is rounding
 
@@ -26,7 +29,8 @@ Floats = NDArray[np.float64]
 def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     """Return the radius of convergence of each motion about its initial time.
 
-    It is infinite if the orders show an entire motion, nan if they do not determine it.
+    It is infinite where the equations prove that the motion is entire or a polynomial, nan where neither they nor the
+    orders determine it to `DETERMINED`.
 
     Parameters
     ----------
@@ -44,6 +48,10 @@ def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Float
     """
     series = expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
+    expanded_names = {*(f"ddot({name})" for name in problem.coordinates), *problem.multipliers}
+    constants = (*problem.multipliers, *problem.parameters)
+    if is_entire(computing(problem.motion, expanded_names), problem.state, constants):
+        return np.where(finite, np.inf, np.nan)
     radii[finite] = [_number(found) for found in estimate_radii(series[:, :, finite])]
     ended = finite & ~series[:, ORDER // 2 :].any(axis=(0, 1))
     radii[ended] = np.where(_solves(problem, series[:, :, ended], values[:, ended]), np.inf, np.nan)
@@ -126,6 +134,5 @@ def _expanding(problem: MotionProblem) -> Any:
 
 
 def _number(found: Radius) -> float:
-    if found.estimate is not None:
-        return found.estimate
-    return np.inf if found in (ENTIRE, POLYNOMIAL) else np.nan
+    certain = found.estimate is not None and found.uncertainty <= DETERMINED * found.estimate
+    return found.estimate if certain else np.nan

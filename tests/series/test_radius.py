@@ -98,6 +98,22 @@ def test_a_farther_singularity_does_not_hide_a_nearer_one():
     require_truth_inside([[a + b for a, b in zip(near, far, strict=True)]], math.sqrt(2))
 
 
+@pytest.mark.parametrize(
+    ("near", "exponent", "far", "pole"),
+    [
+        (0.267 + 0.964j, 0.5, 0.276 + 0.992j, -1),
+        (0.955 + 0.296j, 0.5, 1.029 + 0.209j, -2),
+        (-0.857 + 0.516j, 1.5, -0.994 + 0.47j, -1),
+        (0.267 + 0.964j, 0.5, 0.373 + 0.96j, -2),
+    ],
+)
+def test_a_stronger_singularity_just_behind_a_weaker_one_was_taken_for_it(near, exponent, far, pole):
+    """Fits that agreed to 1e-4 showed the farther one."""
+    with mpmath.workdps(DIGITS):
+        row = [a + b for a, b in zip(branch_point(near, exponent), branch_point(far, pole), strict=True)]
+    require_truth_inside([row], abs(near), (24, 30, 40, 60))
+
+
 def test_radius_of_a_double_pole_of_a_nonlinear_motion():
     with mpmath.workdps(DIGITS):
         row = weierstrass()

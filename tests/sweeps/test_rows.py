@@ -406,6 +406,24 @@ motion : holonomic_scene(system, initial_state = [x = 1, dot(x) = 1], parameter_
     assert list(found) == pytest.approx(radii, nan_ok=True)
 
 
+BEAD = """
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [k],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = k*{energy} + y, constraints = [y - u*x])$
+slide : holonomic_scene(system, control_law = [u = {law}], parameter_values = [k = 2],
+  initial_state = [x = 1, dot(x) = 1])$"""
+
+
+@pytest.mark.parametrize(
+    ("energy", "law", "radii"),
+    [("x*y", "2", [np.inf] * 2), ("x*y^3/10^9", "2", [np.inf, np.nan]), ("x*y", "1 + t/10", [200**0.5, np.nan])],
+)
+def test_radius_is_infinite_where_the_equations_prove_it_and_empty_where_it_is_uncertain(energy, law, radii):
+    """Truth: 1 + u^2 = 0 at u = i; forces of third order are weak, and end a motion later than 40 orders show."""
+    scene = holonom.system(BEAD.format(energy=energy, law=law))
+    found = holonom.sweep(scene, values={"k": [0, 1]}, keep=["radius"]).to_pandas()["radius"]
+    assert list(found) == pytest.approx(radii, rel=1e-6, nan_ok=True)
+
+
 def test_sweep_over_a_parameter_that_cancels_gives_one_motion():
     """A body falls as fast whatever its mass."""
     scene = holonom.system("""
