@@ -177,6 +177,8 @@ def _quality(report: "Report") -> Iterator[str]:
     yield f"{report.compile_seconds:.3f} s to compile{code}, {report.run_seconds:.3g} s to run"
     yield from notes(report)
     yield from _switchings(report.switchings)
+    for condition in report.unreleased:
+        yield f"{condition} does not cross zero: the joint is not released."
     if report.relative_degrees:
         degrees = ", ".join(map(str, report.relative_degrees))
         yield f"The outputs of the servo-constraints have the relative degrees {degrees}."

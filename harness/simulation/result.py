@@ -67,6 +67,7 @@ class Report:
         "Quantities whose relative error exceeds what the tolerance allows. A motion with any is rejected."
     )
     ending: Ending | None = entry("Whether an event ended the motion; null where the scene names none.", None)
+    unreleased: tuple[str, ...] = entry("Conditions of releases that do not cross zero: their joints stay.", ())
     choice: Choice | None = entry(
         "Why the engine that began was taken: the steps that the default engine has ahead, the operations of the "
         "motion program, and the seconds that the motion is expected to take with each engine. Null where one was "

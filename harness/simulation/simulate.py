@@ -437,6 +437,7 @@ class _Simulation:
             cases=self._cases(start, end),
             switchings=tuple(self.motion.switchings),
             ending=self.ending,
+            unreleased=tuple(release.of for release in self.motion.problem.ends.released),
             choice=self.begun.engine.choice,
             controls={name: values[-1] for name, values in self.controls.items()},
             outputs={name: values[-1] for name, values in self.outputs.items()},

@@ -102,6 +102,14 @@ def test_a_condition_that_is_zero_until_another_joint_is_released_was_never_exam
     assert at(until=lower[0], samples=2)["x2"][-1] == pytest.approx(5.1, rel=1e-13)
 
 
+@pytest.mark.parametrize(("condition", "left"), [("t", ("t",)), ("y - 1", ("y-1",)), ("t - 1/2", ())])
+def test_conditions_that_do_not_cross_zero_are_reported(condition, left):
+    """The time is zero at first, and does not cross zero after that."""
+    motion = holonom.system(CUT.replace("{ends}", f"released = [thread = {condition}]")).simulate()
+    assert motion.report.unreleased == left
+    assert len(motion.report.switchings) == 1 - len(left)
+
+
 def test_cut_thread_lets_the_bob_fly_on_a_parabola():
     motion = holonom.system(CUT.replace("{ends}", "released = [thread = t - 1/2]")).simulate(samples=9)
     assert released(motion) == [(0.5, "t-1/2")]
