@@ -90,11 +90,7 @@ class FreeMotionTrial:
         if Verdict.UNDECIDED in found:
             left = "some" if Verdict.AGREES in found else "undecided"
             return left, translatable("a law was not confirmed on the time span by the equations of motion")
-        if verdict == "none" and (law := self._law_found()):
-            return "undecided", translatable(
-                "the search of closed forms found no law, a numerical search did: %(law)s", law=law
-            )
-        return verdict, ""
+        return ("undecided", reason) if verdict == "none" and (reason := self._law_found()) else (verdict, "")
 
     def _law_found(self) -> str:
         span = self.span and (float(self.span[0]), float(self.span[1]))
@@ -102,7 +98,14 @@ class FreeMotionTrial:
         if found is None:
             return ""
         numbers = ", ".join(f"{name} = {value:.6g}" for name, value in {**found.controls, **found.parameters}.items())
-        return f"{numbers} near t = {found.time:.6g}"
+        return translatable(
+            "the search of closed forms found no law; a numerical search found one that leaves multipliers of at most "
+            "%(largest)s from t = %(first)s to t = %(last)s, in the middle with %(numbers)s",
+            largest=f"{found.largest:.1g}",
+            first=f"{found.time - found.reach:.6g}",
+            last=f"{found.time + found.reach:.6g}",
+            numbers=numbers,
+        )
 
 
 def _symbols(law: Mapping[str, T]) -> dict[Symbol, T]:

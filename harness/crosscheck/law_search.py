@@ -57,9 +57,11 @@ Vector = list[float]
 
 
 class FreeLaw(NamedTuple):
-    """Controls for which all multipliers vanish near a time."""
+    """Controls for which all multipliers vanish near a time, as far as numbers show."""
 
     time: float
+    reach: float  # of the times at which they were tried
+    largest: float  # multiplier that was left there
     controls: Mapping[str, float]  # values at the time
     parameters: Mapping[str, float]  # those that were drawn
 
@@ -218,6 +220,8 @@ class _Trial:
             return None
         return FreeLaw(
             self.time,
+            self.reach,
+            size,
             {u.name: found[k * (DEGREE + 1)] for k, u in enumerate(controls)},
             {p.name: value for p, value in zip(self.numbers.parameters, self.parameters, strict=True)},
         )

@@ -32,6 +32,13 @@ def test_search_finds_the_value_of_a_law(system, span, law):
     assert abs(law(found.time, found.controls["u"])) < 1e-4
 
 
+def test_search_states_the_times_it_tried_and_what_is_left_there():
+    """No law makes t^45 x vanish, but no number shows it in the first quarter."""
+    found = find_free_law(guided(t**45 * y), {}, (0.0, 0.25), "seed")
+    assert 0 < found.time - found.reach < found.time + found.reach < 0.25
+    assert found.largest < 1e-9
+
+
 @pytest.mark.parametrize(
     ("force", "holds"),
     [
