@@ -56,7 +56,9 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
     leading = ", ".join(found.leading[:SHOWN_COORDINATES]) + (", ..." if m > SHOWN_COORDINATES else "")
     console.print(f"{counted(m, 'degree')} of freedom, by {leading or 'none'}; {2 * m} eigenvalues.")
     if found.at_rest and found.controls:
-        console.print(f"The controls reach {found.controllable_rank} of {2 * m} directions of the state.")
+        rank = found.controllable_rank
+        how_many = "an unknown number" if rank is None else rank
+        console.print(f"The controls reach {how_many} of {2 * m} directions of the state.")
     if not found.at_rest:
         console.print(MOVING)
 

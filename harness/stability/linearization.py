@@ -53,7 +53,7 @@ RATES = ("u", "du", "ddu")  # a control, its time derivative and its acceleratio
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
 ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
 ROUNDED = 16 * np.finfo(float).eps  # rounding errors of A, relative
-UNREACHED = 1e-9  # directions of the state, relative to the others, that count as unreachable
+UNREACHED = (1e-9, 1e-12)  # relative to other directions of the state: those surely reached, and surely not
 
 
 def by_rates(matrix: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -170,9 +170,9 @@ class Linearization(Documented, Shown):
         return -self.eigenvalues.real / np.where(sizes > 0, sizes, 1.0) + 0.0
 
     @property
-    @computed("Kalman's, at most 2m.", minimum=0)
-    def controllable_rank(self) -> int:
-        """Kalman's rank of controllability, at most 2m, in floating-point numbers.
+    @computed("Kalman's, at most 2m; null where rounding does not determine it.", minimum=0)
+    def controllable_rank(self) -> int | None:
+        """Kalman's rank of controllability, at most 2m, or None if rounding does not determine it.
 
         With z = x - (B_du + A B_ddu) du - B_ddu du' the controls enter by B_u + A B_du + A^2 B_ddu alone (Kailath,
         Linear Systems, chapter 2).
@@ -181,12 +181,12 @@ class Linearization(Documented, Shown):
         return _reachable(self.A, b_u + self.A @ (b_du + self.A @ b_ddu))
 
     @property
-    @computed("Kalman's, by all outputs.", "observable_rank", minimum=0)
-    def _observable_rank(self) -> int:
+    @computed("Kalman's, by all outputs; null where rounding does not determine it.", "observable_rank", minimum=0)
+    def _observable_rank(self) -> int | None:
         return self.observable_rank()
 
-    def observable_rank(self, outputs: Sequence[str] | None = None) -> int:
-        """Kalman's rank of observability, at most 2m.
+    def observable_rank(self, outputs: Sequence[str] | None = None) -> int | None:
+        """Kalman's rank of observability, at most 2m, or None if rounding does not determine it.
 
         Parameters
         ----------
@@ -195,7 +195,7 @@ class Linearization(Documented, Shown):
 
         Returns
         -------
-        int
+        int or None
 
         Raises
         ------
@@ -618,16 +618,21 @@ def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, c
     return here[f"{row}_by_q"] @ q + here[f"{row}_by_v"] @ v + by_controls @ controls
 
 
-def _reachable(A: Matrix, B: Matrix) -> int:
-    """Return the dimension of the span of B, A B, A^2 B, ..., up to rounding."""
+def _reachable(A: Matrix, B: Matrix) -> int | None:
+    """Return the dimension of the span of B, A B, A^2 B, ..., or None if rounding does not determine it."""
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
-    B = B / or_one(np.linalg.norm(B, axis=0))
+    fewest, most = (_dimension(A, B / or_one(np.linalg.norm(B, axis=0)), least) for least in UNREACHED)
+    return fewest if fewest == most else None
+
+
+def _dimension(A: Matrix, B: Matrix, least: float) -> int:
     reached = np.zeros((len(A), 0))
     while B.shape[1] and reached.shape[1] < len(A):
-        B = B - reached @ (reached.T @ B)
+        for _ in range(2):  # twice is enough (Parlett, The Symmetric Eigenvalue Problem, section 6.9)
+            B = B - reached @ (reached.T @ B)
         left, values, _ = np.linalg.svd(B, full_matrices=False)
-        new = left[:, values > UNREACHED]
+        new = left[:, values > least]
         reached, B = np.concatenate([reached, new], axis=1), A @ new
     return reached.shape[1]
 

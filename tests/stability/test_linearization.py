@@ -124,6 +124,20 @@ def test_a_cart_with_a_pendulum_against_sympys_linearizer(y):
     assert found.observable_rank(["dot(x)"]) == 3
 
 
+@pytest.mark.parametrize(
+    ("mass", "drive", "coupling", "rank"), [("1", "1", "1", 4), ("1/10^4", "10^8", "1/10", None), ("1", "1", "0", 2)]
+)
+def test_rank_of_controllability_is_open_where_rounding_does_not_determine_it(mass, drive, coupling, rank):
+    """Kalman's rank is 4 unless the coupling is zero; a fast mode that hardly moves the slow one left 2."""
+    found = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y, z], controls = [u],
+  kinetic_energy = {mass}*dot(x)^2/2 + dot(y)^2/2,
+  potential_energy = {drive}*(x - z)^2/2 + {coupling}*(y - x)^2/2 + y^2/2, constraints = [z - u])$
+rest : holonomic_scene(system, control_law = [u = 0],
+  initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0])$""").linearize()
+    assert found.controllable_rank == rank
+
+
 # ---- motions that are followed ---------------------------------------------------------------------------------------
 
 PARTS = {
