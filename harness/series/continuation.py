@@ -1,6 +1,6 @@
-"""Continue a motion into the complex plane of the time, around a place where its equations may be singular.
+"""Continue a motion around a complex time.
 
-Along a motion that is regular inside a circle, the accelerations and reactions return to their values after one turn,
+The equations may be singular there. Along a motion that is regular inside a circle, the accelerations and reactions return to their values after one turn,
 and have no negative powers there.
 """
 
@@ -20,7 +20,7 @@ MOST_EVALUATIONS = 20_000
 
 
 def ends_at(evaluate: Evaluate, start: Numbers, place: complex, width: float) -> bool:
-    """Return True if a motion is singular at a place, or nearer to it than circles can be.
+    """Return True if a motion is singular at a place, as far as circles show.
 
     False also if it cannot be continued on the ray to the place.
 
@@ -63,7 +63,10 @@ def _ends_inside(evaluate: Evaluate, start: Numbers, place: complex, radius: flo
 
 
 def _continued(evaluate: Evaluate, start: Numbers, path: Path, times: list[float]) -> list[Numbers]:
-    """Return states along a path, or raise ArithmeticError if the integration does not succeed."""
+    """Return states along a path.
+
+    Raise ArithmeticError if the integration does not succeed.
+    """
     from scipy.integrate import solve_ivp
 
     n, evaluations = len(start) // 2, iter(range(MOST_EVALUATIONS))

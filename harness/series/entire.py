@@ -1,6 +1,6 @@
-"""Prove that a motion is entire: its equations are linear in the state, with entire coefficients.
+"""Prove that a motion is entire.
 
-Solutions of such equations are entire (Coddington & Levinson, Theory of Ordinary Differential Equations, chapter 3,
+Its equations are linear in the state, with entire coefficients. Solutions of such equations are entire (Coddington & Levinson, Theory of Ordinary Differential Equations, chapter 3,
 theorem 7.1). The proof follows the degree of each expression in the state. No identity is used: "no" leaves it open.
 """
 

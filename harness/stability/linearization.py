@@ -172,7 +172,9 @@ class Linearization(Documented, Shown):
     @property
     @computed("Kalman's, at most 2m; null where rounding does not determine it.", minimum=0)
     def controllable_rank(self) -> int | None:
-        """Kalman's rank of controllability, at most 2m, or None if rounding does not determine it.
+        """Kalman's rank of controllability, at most 2m.
+
+        None if rounding does not determine it.
 
         With z = x - (B_du + A B_ddu) du - B_ddu du' the controls enter by B_u + A B_du + A^2 B_ddu alone (Kailath,
         Linear Systems, chapter 2).
@@ -186,7 +188,9 @@ class Linearization(Documented, Shown):
         return self.observable_rank()
 
     def observable_rank(self, outputs: Sequence[str] | None = None) -> int | None:
-        """Kalman's rank of observability, at most 2m, or None if rounding does not determine it.
+        """Kalman's rank of observability, at most 2m.
+
+        None if rounding does not determine it.
 
         Parameters
         ----------
@@ -619,7 +623,10 @@ def _by_deviations(here: Mapping[str, Matrix], row: str, q: Matrix, v: Matrix, c
 
 
 def _reachable(A: Matrix, B: Matrix) -> int | None:
-    """Return the dimension of the span of B, A B, A^2 B, ..., or None if rounding does not determine it."""
+    """Return the dimension of the span of B, A B, A^2 B, ...
+
+    None if rounding does not determine it.
+    """
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
     fewest, most = (_dimension(A, B / or_one(np.linalg.norm(B, axis=0)), least) for least in UNREACHED)

@@ -6,8 +6,7 @@
     d(NAME, P)          derivative at the end of a quantity by a parameter that varies, or by an initial value
     zero(EXPR)          the first time after the initial time at which it crosses zero, empty where it does not
     free                true if the multipliers stay at zero, condition (10) of free motion
-    radius              radius of convergence of the initial motion, infinite where that is proved; empty where its
-                        uncertainty is above 5 %
+    radius              radius of convergence of the initial motion, empty if uncertain by more than 5 %
     residual            how far the end is from the constraints. It is always recorded
 
 The end is where the scene's `until` ends the motion, or else its time span. At a given time after it there is nothing.
