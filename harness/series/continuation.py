@@ -1,7 +1,7 @@
 """Continue a motion around a complex time.
 
-The equations may be singular there. Along a motion that is regular inside a circle, the accelerations and reactions return to their values after one turn,
-and have no negative powers there.
+The equations may be singular there. Along a motion that is regular inside a circle, the accelerations and reactions
+return to their values after one turn, and have no negative powers there.
 """
 
 from collections.abc import Callable

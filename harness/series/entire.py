@@ -1,7 +1,8 @@
 """Prove that a motion is entire.
 
-Its equations are linear in the state, with entire coefficients. Solutions of such equations are entire (Coddington & Levinson, Theory of Ordinary Differential Equations, chapter 3,
-theorem 7.1). The proof follows the degree of each expression in the state. No identity is used: "no" leaves it open.
+Its equations are linear in the state, with entire coefficients. Solutions of such equations are entire (Coddington &
+Levinson, Theory of Ordinary Differential Equations, chapter 3, theorem 7.1). The proof follows the degree of each
+expression in the state. No identity is used: "no" leaves it open.
 """
 
 from collections.abc import Collection
