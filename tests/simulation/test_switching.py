@@ -11,6 +11,7 @@ from functools import cache
 from itertools import count, pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ from holonom.program.request import Request
 from holonom.program.sign_pattern import drawing_at_any_time
 from holonom.sandbox import Limits
 from holonom.simulation.engines.taylor import TaylorEngine
-from holonom.simulation.hybrid_motion import EventOutcome
+from holonom.simulation.hybrid_motion import CROWD, CROWDED, EventOutcome, HybridMotion
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.result import Report
 from holonom.simulation.simulate import simulate
@@ -306,6 +307,15 @@ def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, time, 
     with failing(ErrorKind.NO_WAY_ON, *facts) as stopped:
         end_of(problem(), EngineName.AUTO)
     assert stopped.value.detail.split(",")[0] == time
+
+
+@pytest.mark.parametrize("first", [0.0, 700.0])
+def test_many_switchings_are_crowded_in_a_small_part_of_the_span_whenever_that_is(first):
+    for apart, together in ((0.99 * CROWDED / CROWD, True), (1.01 * CROWDED / CROWD, False)):
+        starts = [first * 10 + 10 * apart * k for k in range(CROWD + 1)]
+        for few in (0, 1):
+            motion = SimpleNamespace(intervals=[SimpleNamespace(start=t) for t in starts[few:]], _span=10.0)
+            assert HybridMotion._crowded(motion, starts[-1] + 10 * apart) is (together and not few)
 
 
 @pytest.mark.parametrize("precision", ["double", "quadruple"])
