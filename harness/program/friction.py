@@ -7,7 +7,8 @@ accelerations under given amounts are affine in them (`maxima/program/reacting_f
     size_j         the largest amount,
     reaction_k     the multipliers whose signs forces contain.
 
-A motion slides on switching surfaces with the amounts of drive_j = 0.
+A motion slides on switching surfaces with the amounts of drive_j = 0. These may depend on each other: the contacts of
+a ladder stick together, and their amounts are not unique. Then one slides, and the others take all their friction.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -21,6 +22,7 @@ from .rewriting import ONE, ZERO, computing, with_numbers
 from .tape import Tape
 
 SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
+STUCK = {"stuck 1": 1, "stuck -1": -1}  # signs that stick with the sliding one, at their full friction
 Pattern = Mapping[str, int | str]
 Row = list[Atom]
 
@@ -42,6 +44,35 @@ def unknown_amounts(problem: MotionProblem, zeros: Collection[str]) -> tuple[str
     """
     sized = {sign.name for place, sign in enumerate(problem.signs, 1) if f"size[{place}]" in problem.switching.outputs}
     return tuple(sign.name for sign in problem.signs if sign.name in sized or sign.name in zeros)
+
+
+def sticking(pattern: Pattern) -> list[str]:
+    """Return the signs of the switching functions that remain zero.
+
+    Parameters
+    ----------
+    pattern : Pattern
+
+    Returns
+    -------
+    list of str
+        Those that slide or are stuck.
+    """
+    return [name for name, value in pattern.items() if isinstance(value, str)]
+
+
+def numbers_in(pattern: Pattern) -> dict[str, Fraction]:
+    """Return the signs that are numbers.
+
+    Parameters
+    ----------
+    pattern : Pattern
+
+    Returns
+    -------
+    dict of str to Fraction
+    """
+    return {name: Fraction(STUCK.get(value, value)) for name, value in pattern.items() if value != SLIDING}
 
 
 def affine_terms(
@@ -68,7 +99,7 @@ def affine_terms(
     """
     wanted = {f"drive[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.name in zeros}
     wanted |= {name for name in problem.switching.outputs if name.startswith(("size[", "reaction[", "regular"))}
-    given = {name: Fraction(value) for name, value in pattern.items() if name not in unknown}
+    given = {name: number for name, number in numbers_in(pattern).items() if name not in unknown}
     program = with_numbers(computing(problem.switching, wanted), given)
     both = differentiated(program, {name: {name: ONE} for name in unknown})
     slopes = computing(both, both.outputs.keys() - program.outputs.keys())
@@ -105,7 +136,7 @@ def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:
     problem : MotionProblem
         A motion with signs.
     pattern : Pattern
-        1, -1 or `SLIDING` for each sign.
+        The sign of each function.
 
     Returns
     -------
@@ -118,7 +149,8 @@ def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:
     terms = affine_terms(problem, pattern, zeros, unknown)
     tape = Tape({*terms.inputs, *(name for name, _ in terms.assignments), *pattern})
     equations = _Equations(terms, {sign.name: place for place, sign in enumerate(problem.signs, 1)}, unknown, tape)
-    amounts = _solved([equations.row(name, pattern[name]) for name in unknown], tape)
+    numbers = numbers_in(pattern)
+    amounts = _solved([equations.row(name, numbers.get(name)) for name in unknown], tape)
     signs = [(name, equations.share(name, amounts)) for name in zeros]
     outputs = {name: Name(name) for name in zeros}
     whole = replace(terms, assignments=(*terms.assignments, *tape.assignments, *signs), outputs=outputs)
@@ -133,7 +165,7 @@ def room_to_slide(problem: MotionProblem, pattern: Pattern, name: str, side: int
     problem : MotionProblem
         A motion with signs.
     pattern : Pattern
-        1, -1 or `SLIDING` for each sign.
+        The sign of each function.
     name : str
         A sign that slides.
     side : int
@@ -163,12 +195,15 @@ class _Equations:
         slopes = [self._terms.get(derivative_name(output, other), ZERO) for other in self._unknown]
         return [*slopes, self._terms.get(output, otherwise)]
 
-    def row(self, name: str, sign: int | str) -> Row:
-        """Return the coefficients of a sign's equation, then the right side."""
-        if sign == SLIDING:
+    def row(self, name: str, sign: Fraction | None) -> Row:
+        """Return the coefficients of a sign's equation, then the right side.
+
+        The sign is None if it slides.
+        """
+        if sign is None:
             *slopes, constant = self._affine("drive", name, ZERO)
             return [*(self._tape(Operation.NEGATE, slope) for slope in slopes), constant]
-        *slopes, constant = (self._tape.product(Fraction(sign), term) for term in self._affine("size", name, ONE))
+        *slopes, constant = (self._tape.product(sign, term) for term in self._affine("size", name, ONE))
         own = [ONE if other == name else ZERO for other in self._unknown]
         return [*(self._tape(Operation.SUBTRACT, *pair) for pair in zip(own, slopes, strict=True)), constant]
 

@@ -12,7 +12,7 @@ from itertools import product
 from typing import Any, TypeVar
 
 from .drawing import Drawing
-from .friction import SLIDING, Pattern, sliding_signs
+from .friction import SLIDING, Pattern, numbers_in, sliding_signs
 from .motion_problem import DependsOn, Ends, MotionProblem, Servo
 from .motion_program import Call, Name, Operation, Program
 from .rewriting import computing, preceded, untaken, with_names_for_numbers, with_numbers
@@ -28,7 +28,7 @@ def problem_in(problem: MotionProblem, pattern: Pattern) -> MotionProblem:
     problem : MotionProblem
         The motion, with or without signs.
     pattern : mapping of str to int or str
-        1, -1 or `SLIDING` for each sign.
+        The sign of each function, 1, -1 or one that slides.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     program : Program
         One of its programs.
     pattern : Pattern
-        1, -1 or `SLIDING` for each sign.
+        The sign of each function, 1, -1 or one that slides.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     """
     if SLIDING in pattern.values():
         program = preceded(sliding_signs(problem, pattern), program)
-    return with_numbers(program, {name: Fraction(sign) for name, sign in pattern.items() if sign != SLIDING})
+    return with_numbers(program, numbers_in(pattern))
 
 
 def drawing_at_any_time(problem: MotionProblem) -> Drawing:
@@ -135,7 +135,7 @@ def signs_of_reactions(problem: MotionProblem, pattern: Pattern) -> list[Pattern
     problem : MotionProblem
         The motion.
     pattern : Pattern
-        1, -1 or `SLIDING` for each sign.
+        The sign of each function, 1, -1 or one that slides.
 
     Returns
     -------

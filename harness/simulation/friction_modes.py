@@ -1,13 +1,16 @@
 """Modes of friction at a state, and which of them the accelerations agree with.
 
-At a zero of a switching function its sign is 1, -1, or lets the motion slide. In each mode the amounts of
-friction satisfy linear equations (`harness/program/friction.py`). A mode agrees if a sliding amount is at most as large
-as its size, if drives lead to the side of the sign, and if multipliers have the signs that forces contain.
+At a zero of a switching function its sign is 1, -1, or lets the motion slide. In each mode the amounts of friction
+satisfy linear equations (`harness/program/friction.py`). A mode agrees if a sliding amount is at most as large as its
+size, if drives lead to the side of the sign, and if multipliers have the signs that forces contain.
 
 The accelerations are unique if one solution agrees. They remain so while the determinants of all modes are positive:
 a piecewise linear map whose parts have determinants of one sign is proper, and its degree, the number of solutions, is
 the same for all right sides and under continuous changes (Scholtes, Introduction to Piecewise Differentiable Equations,
-section 2.3).
+chapter 2).
+
+Switching surfaces that depend on each other have no unique amounts. If all zeros do, one acceleration decides. The
+contacts stick unless all of them slip to the same side with accelerations to it.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -17,7 +20,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ..program.differentiation import derivative_name
-from ..program.friction import SLIDING, Pattern, affine_terms, slides, unknown_amounts
+from ..program.friction import (
+    SLIDING,
+    STUCK,
+    Pattern,
+    affine_terms,
+    slides,
+    sticking,
+    unknown_amounts,
+)
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.precision import Precision
 from .evaluation import Numbers, as_floats, evaluation
@@ -35,6 +46,7 @@ class Solution(NamedTuple):
     drives: Vector  # of the zeros
     amounts: Vector  # zero where they have no effect
     sizes: Vector  # of the largest terms of drives, then of the sizes of amounts
+    used: float  # the largest share that a sliding amount has of its size
 
     def accelerates_as(self, other: "Solution") -> bool:
         """Return True if the drives are those of another solution.
@@ -42,7 +54,6 @@ class Solution(NamedTuple):
         Parameters
         ----------
         other : Solution
-            Solution at the same state.
 
         Returns
         -------
@@ -56,7 +67,6 @@ class Solution(NamedTuple):
         Parameters
         ----------
         other : Solution
-            Solution at the same state.
 
         Returns
         -------
@@ -90,13 +100,25 @@ class FrictionModes:
         Signs with drives whose switching functions vanish.
     precision : Precision
         Numbers of the inputs.
+    dependent : bool
+        True if the zeros depend on one of them.
     """
 
-    def __init__(self, problem: MotionProblem, pattern: Pattern, zeros: Collection[str], precision: Precision) -> None:
+    def __init__(
+        self,
+        problem: MotionProblem,
+        pattern: Pattern,
+        zeros: Collection[str],
+        precision: Precision,
+        dependent: bool = False,
+    ) -> None:
         self._places = {sign.name: place for place, sign in enumerate(problem.signs, 1)}
         self._zeros = [name for name in self._places if name in zeros]
         self.rough = [name for name in self._zeros if not slides(problem, name)]
         self._unknown = unknown_amounts(problem, set(zeros) - set(self.rough))
+        free = [name for name in self._zeros if name not in self.rough]
+        self._signs = [dict(zip(free, each, strict=True)) for each in product((1, -1, SLIDING), repeat=len(free))]
+        self._dependent = dependent
         self._reactions = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
         self._branches = []  # patterns of the signs of multipliers, with their terms as functions
         for signs in product((1, -1), repeat=len(self.rough) + len(self._reactions)):
@@ -106,8 +128,8 @@ class FrictionModes:
 
     @property
     def count(self) -> int:
-        """Number of modes."""
-        return len(self._branches) * 3 ** (len(self._zeros) - len(self.rough))
+        """Number of guards."""
+        return len(self._branches) * (4 if self._dependent else len(self._signs))
 
     def agreeing(self, inputs: Numbers) -> list[Solution]:
         """Return the modes that agree with their solutions at a state.
@@ -127,8 +149,8 @@ class FrictionModes:
         agreeing = [solution for solution in found if solution is not None]
         return sorted(agreeing, key=lambda solution: -list(solution.pattern.values()).count(SLIDING))
 
-    def determinants(self, inputs: Numbers) -> Numbers:
-        """Return the determinant of each mode, positive where accelerations are unique.
+    def guards(self, inputs: Numbers) -> Numbers:
+        """Return functions that are positive while the accelerations remain unique.
 
         Parameters
         ----------
@@ -137,17 +159,66 @@ class FrictionModes:
 
         Returns
         -------
-        ndarray, shape (modes, k)
+        ndarray, shape (guards, k)
+            The determinant of each mode. If the zeros depend on each other, those of slipping to both sides, and how
+            far these modes are from agreeing.
         """
-        modes = self._modes(inputs)
-        return np.array([terms.regular * np.linalg.det(self._equations(mode, terms)[0]) for mode, terms in modes])
+        if self._dependent:
+            return np.concatenate([self._guards_of_slipping(branch, terms) for branch, terms in self._branched(inputs)])
+        return np.array([self._determinant(mode, terms) for mode, terms in self._modes(inputs)])
+
+    def _determinant(self, mode: Pattern, terms: Terms) -> Vector:
+        return terms.regular * np.linalg.det(self._equations(mode, terms)[0])
+
+    def _guards_of_slipping(self, branch: Pattern, terms: Terms) -> Numbers:
+        """Return the guards of zeros that depend on each other, shape (4, k)."""
+        along = terms.drives[:, self._unknown.index(self._zeros[0])]
+        sides = np.array([branch[name] for name in self._reactions])
+        found = []
+        for side in (1, -1):
+            mode = branch | dict(zip(self._zeros, side * np.sign(along / along[0])[:, 0].astype(int), strict=True))
+            matrices, right = self._equations(mode, terms)
+            amounts = np.append(np.linalg.solve(matrices, right[..., None])[..., 0].T, np.ones((1, len(right))), axis=0)
+            drive, against = terms.drives[0] * amounts, terms.reactions * amounts
+            leads = -side * drive.sum(axis=0) / np.abs(drive).max(axis=0)
+            wrong = (-sides[:, None] * against.sum(axis=1) / np.abs(against).max(axis=1)).max(axis=0, initial=-1.0)
+            found += [self._determinant(mode, terms), np.maximum(leads, wrong)]
+        return np.array(found)
 
     def _modes(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
-        free = [name for name in self._zeros if name not in self.rough]
+        for branch, terms in self._branched(inputs):
+            for signs in self._signs:
+                yield {name: (branch | signs)[name] for name in self._places}, terms
+
+    def _branched(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
         for branch, outputs, function in self._branches:
-            terms = self._terms(dict(zip(outputs, as_floats(function(inputs)), strict=True)), inputs.shape[1])
-            for signs in product((1, -1, SLIDING), repeat=len(free)):
-                yield {**branch, **dict(zip(free, signs, strict=True))}, terms
+            yield branch, self._terms(dict(zip(outputs, as_floats(function(inputs)), strict=True)), inputs.shape[1])
+
+    def shared(self, solutions: Sequence[Solution], inputs: Numbers) -> Pattern | None:
+        """Return a pattern in which contacts stick together.
+
+        Parameters
+        ----------
+        solutions : sequence of Solution
+            Modes that agree, with the same accelerations and different amounts.
+        inputs : ndarray, shape (inputs,)
+            As for `agreeing`.
+
+        Returns
+        -------
+        Pattern or None
+            The mode that is farthest from its end. None if the zeros do not depend on one of them.
+        """
+        found = [each for each in solutions if SLIDING in each.pattern.values()]
+        if not found or self.rough:
+            return None
+        slopes = next(self._modes(inputs[:, None]))[1].drives[:, :-1, 0]
+        products = np.abs(slopes[:, :, None, None] * slopes)
+        if not _close(products, products.transpose(2, 1, 0, 3), products):
+            return None
+        best = min(found, key=lambda each: each.used)
+        others = [name for name in self._zeros if best.pattern[name] != SLIDING]
+        return best.pattern | {name: f"stuck {best.pattern[name]}" for name in others}
 
     def _terms(self, values: Mapping[str, Vector], k: int) -> Terms:
         def affine(quantity: str, names: Sequence[str], constant: float) -> Numbers:
@@ -188,22 +259,23 @@ class FrictionModes:
         (drives, of_drives), (limits, of_limits), (reactions, of_reactions) = (
             _values_and_sizes(each[..., 0], amounts) for each in terms[:3]
         )
-        sliding = np.array([mode[name] == SLIDING for name in self._unknown], dtype=bool)
+        slide = np.array([mode[name] == SLIDING for name in self._unknown], dtype=bool)
         signs = np.array([0 if mode[name] == SLIDING else mode[name] for name in self._zeros])
         sides = np.array([mode[name] for name in self._reactions])
         if (
             (signs * drives < -ZERO * of_drives).any()
-            or (np.abs(amounts) > np.abs(limits) + ZERO * of_limits)[sliding].any()
-            or (np.abs(limits) <= ZERO * of_limits)[sliding].any()
+            or (np.abs(amounts) > np.abs(limits) + ZERO * of_limits)[slide].any()
+            or (np.abs(limits) <= ZERO * of_limits)[slide].any()
             or (sides * reactions < -ZERO * of_reactions).any()
         ):
             return None
         reach = np.concatenate([np.abs(each[:, :-1, 0]) for each in terms[:3]]).max(axis=0, initial=0.0)
-        return Solution(mode, drives, np.where(reach > 0, amounts, 0.0), np.concatenate([of_drives, of_limits]))
+        used = np.max(np.abs(amounts / limits), where=slide, initial=0.0)
+        return Solution(mode, drives, np.where(reach > 0, amounts, 0.0), np.concatenate([of_drives, of_limits]), used)
 
 
 def modes_that_may_agree(problem: MotionProblem, pattern: Pattern, precision: Precision) -> FrictionModes | None:
-    """Return the modes at the switching surfaces on which a motion slides.
+    """Return the modes of the signs that slide.
 
     Parameters
     ----------
@@ -215,8 +287,11 @@ def modes_that_may_agree(problem: MotionProblem, pattern: Pattern, precision: Pr
     FrictionModes or None
         None if at most one sign slides and no force contains multipliers: the amount is unique where it is finite.
     """
-    sliding = [name for name, value in pattern.items() if value == SLIDING]
-    return FrictionModes(problem, pattern, sliding, precision) if problem.reacting or len(sliding) > 1 else None
+    zeros = sticking(pattern)
+    if not problem.reacting and len(zeros) <= 1:
+        return None
+    dependent = bool(STUCK.keys() & set(pattern.values()))
+    return FrictionModes(problem, pattern, zeros, precision, dependent)
 
 
 def _values_and_sizes(terms: Numbers, amounts: Vector) -> tuple[Vector, Vector]:

@@ -29,7 +29,7 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.friction import SLIDING, Pattern
+from ..program.friction import SLIDING, STUCK, Pattern, sticking
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
 from ..program.sign_pattern import driven, switching_function
@@ -39,7 +39,7 @@ from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
 from .events import Events, values_in
-from .friction_modes import FrictionModes
+from .friction_modes import FrictionModes, modes_that_may_agree
 from .inputs import Inputs
 from .matrices import Matrices, Vector
 from .mode import UNIQUE, Mode
@@ -261,7 +261,7 @@ class HybridMotion:
             time_point = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
             t, state = self.time, self.state.copy()
-            pattern = self._decided({**mode.pattern, **changes}, _sliding(mode.pattern), t, state)
+            pattern = self._decided({**mode.pattern, **changes}, sticking(mode.pattern), t, state)
             self._switch(pattern, list(changes), t, state, ())
 
     def _steps(self, stop: Any) -> Iterator[Step]:
@@ -280,11 +280,11 @@ class HybridMotion:
             return False
         modes, t, state = self._modes_at(self.mode.pattern, ()), np.array([self.time]), self.state[:, None]
 
-        def determinants(times: Numbers, states: Numbers) -> Numbers:
-            return modes.determinants(self._inputs(times, states))
+        def guards(times: Numbers, states: Numbers) -> Numbers:
+            return modes.guards(self._inputs(times, states))
 
-        changes = first_order_changes(determinants, t, state, self.nominal)
-        return bool((np.abs(determinants(t, state)) <= NEAR * changes).any())
+        changes = first_order_changes(guards, t, state, self.nominal)
+        return bool((np.abs(guards(t, state)) <= NEAR * changes).any())
 
     # ---- releases ----
 
@@ -316,20 +316,37 @@ class HybridMotion:
     def _cross(self, crossing: Crossing, state: Numbers) -> None:
         """Continue from a switching surface of the state, or from a time event."""
         t, name, before = crossing.t, crossing.name, self.mode.pattern
-        if name == UNIQUE:
+        stuck = not STUCK.keys().isdisjoint(before.values())
+        if name == UNIQUE and not stuck:
             self._reject(t, NOT_UNIQUE)
         if self._left.get(name) == t or self._crowded(t):
-            self._reject(t, translatable("%(sign)s changes its sign again and again", sign=self._signs[name].of))
-        sign, zeros = self._signs[name], [other for other in _sliding(before) if other != name]
+            self._reject(t, translatable("%(sign)s changes its sign again and again", sign=self._of([name])))
+        if stuck and name in (UNIQUE, *sticking(before)):
+            self._leave_stuck(crossing, state)
+            return
+        sign, zeros = self._signs[name], sticking(before)
         pattern = {**before, name: crossing.to}
-        if before[name] != SLIDING and self._is_decided_by_accelerations(sign, pattern, t, state):
-            zeros = [
-                name,
-                *(other for other in self._signs if other != name and self._is_zero(other, pattern, t, state)),
-            ]
+        if before[name] == SLIDING:
+            zeros = [other for other in zeros if other != name]
+        elif self._is_decided_by_accelerations(sign, pattern, t, state):
+            at_zero = {name, *zeros}
+            zeros = [other for other in self._signs if other in at_zero or self._is_zero(other, pattern, t, state)]
         if sign.by is not DependsOn.REACTION:
             pattern = self._decided(pattern, zeros, t, state)
         self._switch(pattern, [name], t, state, (name,))
+
+    def _leave_stuck(self, crossing: Crossing, state: Numbers) -> None:
+        """Let contacts that stick together slip, or share their friction otherwise."""
+        t, before = crossing.t, self.mode.pattern
+        zeros = sticking(before)
+        found = self._modes_at(before, zeros).agreeing(self._inputs(t, state))
+        if found and all(found[0].is_shared_as(each) for each in found):
+            lead = next(name for name in zeros if before[name] == SLIDING)
+            self._switch(found[-1].pattern, [lead], t, state, tuple(zeros))
+        elif crossing.name == UNIQUE:
+            self._reject(t, NOT_UNIQUE)
+        else:
+            self._switch(self._decided(before, zeros, t, state), [crossing.name], t, state, ())
 
     def _switch(self, pattern: Pattern, names: list[str], t: Any, state: Numbers, left: tuple[str, ...]) -> None:
         """Continue in another mode with some signs changed.
@@ -344,11 +361,13 @@ class HybridMotion:
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
         change = self.nominal.share(as_floats(moved - state), as_floats(state))
-        others = [name for name in pattern if name not in names and SLIDING in (pattern[name], before.pattern[name])]
-        for name in (*names, *(name for name in others if pattern[name] != before.pattern[name])):
-            if before.pattern[name] == SLIDING:
+        slid, slides = set(sticking(before.pattern)), set(sticking(pattern))
+        for name in dict.fromkeys((*names, *(name for name in self._signs if name in slid ^ slides))):
+            if name in slid & slides:
+                continue  # contacts share their friction otherwise
+            if name in slid:
                 outcome = EventOutcome.RELEASED
-            elif pattern[name] == SLIDING:
+            elif name in slides:
                 outcome = EventOutcome.SLIDING
             else:
                 outcome = EventOutcome.CROSSED if change <= CONTINUOUS else EventOutcome.IMPULSE
@@ -374,16 +393,19 @@ class HybridMotion:
         """
         if not zeros and not self.problem.reacting:
             return pattern
-        modes = self._modes_at(pattern, zeros)
-        decided = self._only(modes, zeros, t, state)
-        sliding = _sliding(decided)
-        if self.problem.reacting or len(sliding) > 1:
-            modes = self._modes_at(decided, sliding)
-            if not (modes.determinants(self._inputs(np.array([t]), state[:, None])) > 0).all():
-                self._reject(t, NOT_UNIQUE)
-            if sliding and sliding != zeros:
-                self._only(modes, sliding, t, state)
+        decided = self._only(self._modes_at(pattern, zeros), zeros, t, state)
+        lasting = self._lasting_modes(decided)
+        if lasting and not (lasting.guards(self._inputs(np.array([t]), state[:, None])) > 0).all():
+            self._reject(t, NOT_UNIQUE)
+        if lasting and set(sticking(decided)) < set(zeros):
+            self._only(lasting, sticking(decided), t, state)
         return decided
+
+    def _lasting_modes(self, pattern: Pattern) -> FrictionModes | None:
+        what = modes_that_may_agree, frozenset(pattern.items())
+        if what not in self._functions:
+            self._functions[what] = modes_that_may_agree(self.problem, pattern, self._precision)
+        return self._functions[what]
 
     def _only(self, modes: FrictionModes, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
         """Return the pattern of the one solution at a state."""
@@ -394,6 +416,9 @@ class HybridMotion:
         if found and all(found[0].is_shared_as(each) for each in found):
             return found[0].pattern
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
+        shared = modes.shared(found, self._inputs(t, state)) if one else None
+        if shared:
+            return shared
         if one:
             self._reject(t, translatable("%(sign)s stick, and may share the friction in several ways", sign=names))
         if self.problem.reacting:
@@ -537,7 +562,7 @@ class HybridMotion:
     # ---- modes ----
 
     def _mode_of(self, pattern: Pattern, problem: MotionProblem) -> Mode:
-        key = (problem.multipliers, *pattern.values())
+        key = problem.multipliers, frozenset(pattern.items())
         if key not in self._modes:
             self._modes[key] = Mode(
                 problem, pattern, self._time_events, self._request, self._precision, self._end, self._known
@@ -554,10 +579,6 @@ def _knots_of(problem: MotionProblem, precision: Precision) -> list[tuple[Any, F
     behind = precision.number(problem.start["t"])
     knots = [(precision.ratio(knot), knot) for knot, _ in groupby(merge(*(table.knots for table in problem.tables)))]
     return [(t, knot) for t, knot in reversed(knots) if t > behind]
-
-
-def _sliding(pattern: Pattern) -> list[str]:
-    return [name for name, value in pattern.items() if value == SLIDING]
 
 
 def _close(numbers: Vector, others: Vector) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.friction import SLIDING, Pattern, room_to_slide
+from ..program.friction import SLIDING, STUCK, Pattern, room_to_slide
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
@@ -62,8 +62,8 @@ class SwitchingFunctions(SignedFunctions):
         super().__init__(precision, span)
         self._inputs = Inputs(problem, precision)
         for sign in problem.signs:
-            if sign.name not in known:
-                value = pattern[sign.name]
+            value = pattern[sign.name]
+            if sign.name not in known and value not in STUCK:
                 sides = [(1, 1), (-1, 1)] if value == SLIDING else [(-value, value)]
                 self._rows += [(sign.name, to, inside) for to, inside in sides]
         self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
@@ -84,7 +84,7 @@ class SwitchingFunctions(SignedFunctions):
         found = np.reshape([as_floats(function(inputs)[0]) for function in self._functions], (-1, len(times)))
         inside = np.array([side for *_, side in self._rows[: len(found)]], dtype=float)
         signed = inside[:, None] * found + self._rounding
-        return np.concatenate([signed, self._modes.determinants(inputs)]) if self._modes else signed
+        return np.concatenate([signed, self._modes.guards(inputs)]) if self._modes else signed
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:

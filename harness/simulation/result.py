@@ -76,7 +76,11 @@ class Report:
     )
     controls: Mapping[str, Number] = entry("Empty where the scene does not observe them.", dict)
     outputs: Mapping[str, Number] = entry("Observed quantities with names of their own.", dict)
-    undetermined: tuple[str, ...] = entry("Outputs that are not unique because constraints are redundant.", ())
+    undetermined: tuple[str, ...] = entry(
+        "Outputs that are not unique because constraints are redundant; all multipliers if contacts stuck together, "
+        "which may share their friction in several ways.",
+        (),
+    )
     joints: Mapping[str, str] = entry(
         "Of multipliers the joint or body that they belong to, by its name in the scene file.", dict
     )

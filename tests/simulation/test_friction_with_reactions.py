@@ -1,5 +1,6 @@
 """Coulomb friction with the normal force, against closed forms and Newton-Euler equations solved for each sign."""
 
+from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -303,16 +304,44 @@ def test_two_blocks_stick_until_their_forces_are_as_large_as_their_friction():
 
 
 LADDER = """
-system : holonomic_system(coordinates = [x, y, p], parameters = [mu],
-  kinetic_energy = (dot(x)^2 + dot(y)^2)/2 + dot(p)^2/6, potential_energy = 10*y,
+system : holonomic_system(coordinates = [x, y, p], controls = [u], parameters = [mu],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2 + dot(p)^2/6,
+  potential_energy = [weight = 10*y, climber = 40*(y - sin(p) + 2*u*sin(p))],
   forces = [floor = -mu*abs(lambda1)*signum(dot(x) + sin(p)*dot(p))*[1, 0, sin(p)],
             wall = -mu*abs(lambda2)*signum(dot(y) + cos(p)*dot(p))*[0, 1, cos(p)]],
   constraints = [y - sin(p), x + cos(p)])$
-scene : holonomic_scene(system, parameter_values = [mu = 1], initial_state = [p = 6/5, dot(p) = 0])$
+scene : holonomic_scene(system, control_law = [u = t/10], initial_state = [p = 8/10, dot(p) = 0], time_span = [0, 7])$
 """
 
 
-def test_a_ladder_that_rests_has_many_reactions():
-    """It has one degree of freedom, and friction at both ends."""
-    with failing(ErrorKind.NO_WAY_ON, "t = 0", "share"):
-        of_text(LADDER).simulate(until=1)
+@pytest.mark.parametrize("mu", ["1/3", "1/2"])
+def test_a_ladder_stands_until_its_climber_is_too_high(mu):
+    """It has one degree of freedom, and friction at both ends, which is not unique while it stands.
+
+    Truth: the moments of a ladder that slips at both ends, and then the equations of Newton and Euler.
+    """
+    k, p0 = float(Fraction(mu)), 0.8
+    floor = 50 / (1 + k**2)
+    slips = 10 * (2 * k * floor * (np.tan(p0) + k) - 10) / 80
+    motion = of_text(LADDER).simulate(until=slips + 0.4, samples=30, mu=mu)
+    times = motion["t"]
+    assert [each.t for each in motion.report.switchings][:2] == pytest.approx([slips, slips], rel=1e-9)
+    assert motion["p"][times < slips] == pytest.approx(p0, abs=1e-13)
+    assert motion.report.undetermined == ("lambda1", "lambda2")
+
+    def moved(t, state):
+        p, rate = state
+        s, c = np.sin(p), np.cos(p)
+        equations = [  # of x'', y'', p'', the floor's force and the wall's, by Newton and Euler
+            [1, 0, 0, -k, 1],
+            [0, 1, 0, -1, -k],
+            [0, 0, 1 / 3, c - k * s, -s - k * c],
+            [0, 1, -c, 0, 0],
+            [1, 0, -s, 0, 0],
+        ]
+        right = [0, -50, -40 * (t / 5 - 1) * c, -s * rate**2, c * rate**2]
+        return rate, np.linalg.solve(equations, right)[2]
+
+    falls = times > slips
+    truth = solve_ivp(moved, (slips, times[-1]), (p0, 0), t_eval=times[falls], rtol=1e-11, atol=1e-13).y
+    assert motion["p"][falls] == pytest.approx(truth[0], rel=1e-8)
