@@ -74,6 +74,12 @@ class _Polynomials:
     def __len__(self) -> int:
         return len(self._steps)
 
+    @property
+    def last(self) -> float:
+        """The end of the last step with finite numbers, zero without any."""
+        finite = (end for end, _, rows in reversed(self._steps) if np.isfinite(rows).all())
+        return next(finite, 0.0)
+
     def at(self, times: Numbers) -> Numbers:
         """Return the recorded rows at times, shape (rows, k)."""
         ends, lengths, coefficients = (np.array(each) for each in zip(*self._steps, strict=True))
@@ -134,7 +140,7 @@ class _ModeVariation:
         if integrator.time != end / unit or not np.isfinite(integrator.state).all():
             raise HolonomError(
                 ErrorKind.NO_SENSITIVITY,
-                detail=translatable("they are not finite beyond t = %(start)s", start=f"{start:.10g}"),
+                detail=translatable("they are not finite beyond t = %(time)s", time=f"{steps.last * unit:.6g}"),
             )
         reached, grown = np.split(integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps

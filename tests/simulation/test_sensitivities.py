@@ -6,6 +6,7 @@ from math import cosh, sinh, sqrt
 import numpy as np
 import pytest
 import sympy as sp
+from scipy.integrate import quad
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -468,3 +469,13 @@ def test_derivatives_that_are_zero_satisfy_the_constraints():
     found = arm.simulate(samples=2, sensitivities=["m", "l"])
     assert np.max(np.abs(found["d(a, m)"])) < 1e-12
     assert found["d(a, l)"][-1] == pytest.approx(-np.tan(found["a"][-1]) / 0.7)
+
+
+def test_derivatives_end_at_a_flat_position():
+    """The message told the start of the block. Truth: the time at which the rods of `linkage.mac` lie flat."""
+    rate = 2 * 9.81 * 6 / 5
+    flat, _ = quad(lambda phi: 1 / np.sqrt(1 + rate * (1 - np.cos(phi))), 0, np.pi / 2)
+    with pytest.raises(HolonomError) as caught:
+        holonom.load("examples/linkage.mac").simulate(sensitivities=["m"], samples=2)
+    assert caught.value.kind is ErrorKind.NO_SENSITIVITY
+    assert float(caught.value.detail.split()[-1]) == pytest.approx(flat, rel=1e-3)
