@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from ..failures import HolonomError
 from ..program.precision import Precision
 from .engines.engine import Block, Step
 from .evaluation import Numbers, as_floats
@@ -109,20 +110,33 @@ class SignedFunctions(ABC):
             self._sizes[name] = max(self._sizes.get(name, 0.0), size)
         return True
 
-    def _examined(self, block: Block, first: int, count: int) -> "_Portion":
-        """Examine a number of steps of a block together, by polynomials of a low degree."""
+    def _examined(self, block: Block, first: int, count: int) -> _Portion:
+        """Examine a number of steps of a block together."""
         times = np.array(block.times[first : first + count + 1])
-        lengths = times[1:] - times[:-1]
-        inside = times[:-1, None] + lengths[:, None] * self._places
+        clear = as_floats(times[1:] - times[:-1]) <= SHORT * self._span
+        sizes = np.zeros((len(self._rows), len(clear)))
+        if clear.any():
+            try:
+                without, sizes = self._without_zero(times, block.states)
+            except HolonomError:  # beyond the next switching a quantity may have no value
+                without = False
+            clear &= without
+        return _Portion(block, first, clear.tolist(), np.maximum.accumulate(sizes, axis=1))
+
+    def _without_zero(self, times: Numbers, states: Callable[[Numbers], Numbers]) -> tuple[Numbers, Numbers]:
+        """Return steps in which polynomials exclude a zero, and sizes of functions.
+
+        The steps are those between the times. Shapes are (steps,) and (functions, steps).
+        """
+        inside = times[:-1, None] + (times[1:] - times[:-1])[:, None] * self._places
         at = np.concatenate([inside, times[1:, None]], axis=1)
-        values = self.values(at.ravel(), block.states(at.ravel())).reshape(-1, *at.shape)
+        values = self.values(at.ravel(), states(at.ravel())).reshape(-1, *at.shape)
         coefficients = values[..., :-1] @ TO_FEW_COEFFICIENTS.T
         sizes = np.abs(coefficients)
         largest, reach = sizes.max(axis=-1), sizes[..., 1:].sum(axis=-1)
         resolved = sizes[..., -2:].max(axis=-1) <= RESOLVED * largest
         away = (coefficients[..., 0] - reach > UNCLEAR * largest) & (values[..., -1] > 0)
-        clear = (resolved & away).all(axis=0) & (as_floats(lengths) <= SHORT * self._span)
-        return _Portion(block, first, clear.tolist(), np.maximum.accumulate(np.abs(values).max(axis=-1), axis=-1))
+        return (resolved & away).all(axis=0), np.abs(values).max(axis=-1)
 
     def first_crossing(self, step: Step, left: dict[str, Any]) -> Crossing | None:
         """Return the time within a step at which the motion first leaves its pattern.
