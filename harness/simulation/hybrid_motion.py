@@ -17,7 +17,7 @@ the state, an impulse of a switching surface without a law of impact.
 
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator, Sequence
+from collections.abc import Hashable, Iterator, Sequence, Set
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -329,8 +329,7 @@ class HybridMotion:
         if before[name] == SLIDING:
             zeros = [other for other in zeros if other != name]
         elif self._is_decided_by_accelerations(sign, pattern, t, state):
-            at_zero = {name, *zeros}
-            zeros = [other for other in self._signs if other in at_zero or self._is_zero(other, pattern, t, state)]
+            zeros = self._zeros_at({name, *zeros}, pattern, t, state)
         if sign.by is not DependsOn.REACTION:
             pattern = self._decided(pattern, zeros, t, state)
         self._switch(pattern, [name], t, state, (name,))
@@ -379,12 +378,19 @@ class HybridMotion:
             return False
         return driven(self.problem, sign.name)
 
-    def _is_zero(self, name: str, pattern: Pattern, t: Any, state: Numbers) -> bool:
-        """Return True if a sign is zero, and the accelerations decide about it."""
-        sign = self._signs[name]
-        if sign.by in (DependsOn.TIME, DependsOn.REACTION) or not self._vanishes("switch", sign, pattern, t, state):
-            return False
-        return self._is_decided_by_accelerations(sign, pattern, t, state)
+    def _zeros_at(self, known: Set[str], pattern: Pattern, t: Any, state: Numbers) -> list[str]:
+        """Return the signs that are zero, and that the accelerations decide about."""
+        if known.issuperset(self._signs):
+            return list(self._signs)
+        functions, times, states = self.mode.switching_functions, np.array([t]), state[:, None]
+        values = functions.values(times, states)[:, 0]
+        small = np.abs(values) <= ZERO * first_order_changes(functions.values, times, states, self.nominal)[:, 0]
+        zeros = {name for name, is_small in zip(functions.names, small, strict=True) if is_small} & self._signs.keys()
+        return [
+            name
+            for name, sign in self._signs.items()
+            if name in known or (name in zeros and self._is_decided_by_accelerations(sign, pattern, t, state))
+        ]
 
     def _decided(self, pattern: Pattern, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
         """Return a pattern with the signs that the accelerations agree with.

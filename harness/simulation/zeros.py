@@ -79,6 +79,11 @@ class SignedFunctions(ABC):
         self._portion: _Portion | None = None
         self._sections = np.array([precision.ratio(Fraction(place, SECTIONS)) for place in range(1, SECTIONS)])
 
+    @property
+    def names(self) -> list[str]:
+        """Names of the functions."""
+        return [name for name, *_ in self._rows]
+
     @abstractmethod
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return each function times its sign, negative after its crossing.
