@@ -174,7 +174,8 @@ def _number_of(equilibria: "Equilibria") -> str:
         return f"{found}; these are all: the equations have exactly {counted(len(equilibria), 'real solution')}."
     if equilibria.count is None:
         return f"{found}; there may be others."
-    return f"{found}; the equations have exactly {counted(equilibria.count, 'real solution')}."
+    elsewhere = "" if equilibria.regular else ", but places where gradients of the constraints depend are not examined"
+    return f"{found}; the equations have exactly {counted(equilibria.count, 'real solution')}{elsewhere}."
 
 
 def _title(found: "Linearization") -> str:

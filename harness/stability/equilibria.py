@@ -1,8 +1,8 @@
 """Equilibria for constant controls, and their stability.
 
-At rest the equations of motion are r(q, lambda) = 0, f(q) = 0. Newton's method solves them from many random starting
-points. More solutions may exist, unless `holonom.stability.real_solutions` counts as many. Stability follows from two
-theorems:
+At rest the equations of motion are r(q, lambda) = 0, f(q) = 0, where the gradients of f are independent. Newton's
+method solves them from many random starting points. More solutions may exist, unless
+`holonom.stability.real_solutions` counts as many. Stability follows from two theorems:
 
 - If all forces have a potential, or are gyroscopic or linear and dissipative, q is stable if the second variation of
   V - T0 on the constraint manifold is positive definite: the energy has a strict minimum there, and never grows
@@ -128,11 +128,16 @@ class Equilibria(Documented, Shown):
         minimum=0,
     )
 
+    regular: bool = entry(
+        "Whether the constraints are known to have independent gradients wherever they hold; elsewhere, as at cusps, "
+        "nothing is looked for."
+    )
+
     @property
     @computed("Whether those found are all, up to whole turns and signs of Euler parameters.")
     def complete(self) -> bool:
         """True if these are all equilibria, up to turns and signs."""
-        return len(self.found) == self.count and all(each.isolated for each in self.found)
+        return self.regular and len(self.found) == self.count and all(each.isolated for each in self.found)
 
     def __getitem__(self, name: str) -> Equilibrium:
         """Return the equilibrium of a name, or raise `HolonomError`."""
@@ -198,9 +203,10 @@ def find_equilibria(
     names = turns, tuple(reversals)
     solutions = solve_exactly(equations, problem.independent, list(values.values()))
     if solutions is None:
-        return Equilibria(problem.scene, values, starts, found, *left_out, *names, None)
+        return Equilibria(problem.scene, values, starts, found, *left_out, *names, None, False)
     exact = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
-    return Equilibria(problem.scene, values, starts, exact, *left_out, *names, solutions.count >> len(reversals))
+    count = solutions.count >> len(reversals)
+    return Equilibria(problem.scene, values, starts, exact, *left_out, *names, count, solutions.regular)
 
 
 def _constant_controls(

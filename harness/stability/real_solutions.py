@@ -53,9 +53,13 @@ class RealSolutions:
     ----------
     count : int
         Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles.
+    regular : bool
+        Whether the gradients of the independent constraints are known to be independent wherever these hold. Elsewhere
+        a system may be at rest without multipliers that balance its forces.
     """
 
     count: int
+    regular: bool
     _basis: Sequence[PolyElement] = field(repr=False)
     _standard: Sequence[tuple[int, ...]] = field(repr=False)
 
@@ -140,7 +144,7 @@ def solve_exactly(
         constraints taken for independent are not known to be so at all states: others have other solutions there.
     """
     others = [beta for beta in range(len(equations.multipliers)) if beta not in independent]
-    rest, constraints, gradients = _polynomials(equations, independent, controls, others)
+    rest, constraints, gradients = _polynomials(equations, independent, controls)
     polynomials = [*rest, *constraints]
     if not polynomials or not _are_small(polynomials):
         return None
@@ -148,13 +152,29 @@ def solve_exactly(
         return None
     basis = groebner(polynomials, polynomials[0].ring)
     standard = _standard_monomials(basis)
-    return None if standard is None else RealSolutions(_count_real_zeros(basis, standard), basis, standard)
+    if standard is None:
+        return None
+    regular = _are_regular([gradients[beta] for beta in independent], constraints)
+    return RealSolutions(_count_real_zeros(basis, standard), regular, basis, standard)
 
 
 def _are_small(polynomials: Sequence[Any]) -> bool:
     if any(each is UNDEFINED for each in polynomials):
         return False
     return prod(max(map(sum, each.itermonoms())) for each in polynomials) <= SOLUTIONS
+
+
+def _are_regular(gradients: Sequence[Sequence[Any]], constraints: Sequence[PolyElement]) -> bool:
+    """Return True if gradients are independent wherever f = 0: their minors have no real zero there."""
+    if not gradients:
+        return True
+    too_many = comb(len(gradients[0]), len(gradients)) > SOLUTIONS
+    if too_many or any(each is UNDEFINED for row in gradients for each in row):
+        return False
+    ring = gradients[0][0].ring
+    basis = groebner([*constraints, *_minors(gradients, ring)], ring)
+    standard = _standard_monomials(basis)
+    return standard is not None and _count_real_zeros(basis, standard) == 0
 
 
 def _replaceable(
@@ -185,9 +205,9 @@ def _minors(rows: Sequence[Sequence[PolyElement]], ring: PolyRing) -> list[PolyE
 
 
 def _polynomials(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float], others: Sequence[int]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
 ) -> tuple[list[Any], list[Any], list[list[Any]]]:
-    """Return r and f at rest, and the gradients of f if there are other constraints.
+    """Return r and f at rest, and the gradients of f.
 
     Zeros are left out of r and f. What is not a polynomial is `UNDEFINED`.
     """
@@ -195,7 +215,7 @@ def _polynomials(
     forces = [f"equation[{k}]" for k in range(1, n + 1)]
     constraints = [f"constraint[{beta}]" for beta in range(1, g + 1)]
     gradients = [[f"constraint_by_q[{beta},{k}]" for k in range(1, n + 1)] for beta in range(1, g + 1)]
-    program = computing(equations.program, {*forces, *constraints, *(chain(*gradients) if others else ())})
+    program = computing(equations.program, {*forces, *constraints, *chain(*gradients)})
     angles = _angles(program, equations.coordinates)
     plain = [
         *(name for name in equations.coordinates if name not in angles),

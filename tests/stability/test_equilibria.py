@@ -441,3 +441,21 @@ def test_equilibria_were_none_where_the_first_constraints_depend_on_each_other(w
     ]
     assert found.count == count
     assert found.singular == 0
+
+
+@pytest.mark.parametrize(
+    ("constraint", "potential", "place", "count", "complete"),
+    [
+        ("x^2 - y^3", "y", 1, 0, False),  # the cusp at zero is the lowest place
+        ("x^2 + y^2 - 1", "y", 1, 2, True),
+        ("x^2 + x^2*y^2 + y^4 + y^2 - 2", "y", 1, 2, True),  # dependent at complex places alone
+        ("x*y", "x^2 + (y - 1)^2", 0, 1, False),  # two lines cross at zero
+    ],
+)
+def test_equilibria_are_not_all_if_the_constraint_is_singular_somewhere(constraint, potential, place, count, complete):
+    found = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = {potential}, constraints = [{constraint}])$
+rest : holonomic_scene(system, initial_state = [], initial_guess = [x = {place}, y = 1 - {place}/2, dot(x) = 0,
+  dot(y) = 0])$""").equilibria()
+    assert (found.count, found.complete, found.regular) == (count, complete, complete)
