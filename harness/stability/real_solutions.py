@@ -165,7 +165,10 @@ def _are_small(polynomials: Sequence[Any]) -> bool:
 
 
 def _are_regular(gradients: Sequence[Sequence[Any]], constraints: Sequence[PolyElement]) -> bool:
-    """Return True if gradients are independent wherever f = 0: their minors have no real zero there."""
+    """Return True if gradients are independent wherever f = 0.
+
+    Their minors have no real zero there. False also if that is not known.
+    """
     if not gradients:
         return True
     too_many = comb(len(gradients[0]), len(gradients)) > SOLUTIONS
