@@ -26,18 +26,20 @@ from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.friction import SLIDING
 from ..program.heyoka_function import import_heyoka
-from ..program.motion_problem import MotionProblem
+from ..program.motion_problem import MotionProblem, Sign
 from ..program.motion_program import Program
 from ..program.precision import read_precision
-from ..program.sign_pattern import switching_function
+from ..program.sign_pattern import problem_in, switching_function
 from .engines.code import Code, better_code, is_worthwhile
 from .engines.engine import Step
 from .engines.taylor import states_of
-from .evaluation import Numbers
+from .evaluation import Numbers, as_floats, evaluation_once
 from .impulses import moves_behind_impulse
 from .initial_tangents import initial_tangents
+from .inputs import Inputs
+from .matrices import start_of
 from .mode import Mode
-from .nominal import Nominal, nominal_of
+from .nominal import Nominal, first_order_changes, nominal_of
 from .recording import SampleBlock
 from .variation import TIME, Variation, size_of
 from .variational_equations import VariationalEquations, largest
@@ -45,6 +47,7 @@ from .variational_equations import VariationalEquations, largest
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
 DISTANCE, TOLERATED = 1e-6, 1e4
+ON_SURFACE = 1e-9  # of the change of a switching function with the nominal sizes: what is none
 CONTINUOUS = 1e-9  # relative change of a state that is none
 
 
@@ -271,6 +274,7 @@ class Sensitivities:
         self._moves = initial_tangents(problem, begun.problem, self.directions)
         self._steps, self._reached, self._last = 0, self._time, None
         self._pieces: list[_Segment] = []
+        self._begin_on_surfaces(begun)
 
     def take(self, step: Step) -> None:
         """Take a step of the motion. Integrate the derivatives block by block.
@@ -419,10 +423,74 @@ class Sensitivities:
             )
         if before.pattern[changed[0]] == SLIDING:
             return None
-        whole, pattern = before.whole, before.pattern
-        program = whole.once(
-            ("surface", changed[0], frozenset(pattern.items())),
-            whole.switching,
-            lambda: switching_function(whole, "switch", changed[0], pattern),
+        return _switching_zero(before, changed[0])
+
+    def _begin_on_surfaces(self, begun: Mode) -> None:
+        """Begin on switching surfaces that some directions leave.
+
+        A motion that stays on one returns at once: as behind a switching, X jumps along that of the accelerations.
+        A motion that leaves it has derivatives if the accelerations on both sides are the same.
+        """
+        for sign in begun.whole.signs:
+            if not self._leaves(begun, sign).any():
+                continue
+            jump = _jump_between_sides(begun, sign.name)
+            if begun.pattern[sign.name] == SLIDING:
+                self._moves = self._moves - np.outer(jump, self._leaves(begun, sign) / _surface_rate(begun, sign, jump))
+            elif jump.any():
+                self._reject_start(sign)
+        for sign in begun.whole.signs:
+            if begun.pattern[sign.name] == SLIDING and self._leaves(begun, sign).any():
+                self._reject_start(sign)
+
+    def _leaves(self, begun: Mode, sign: Sign) -> Numbers:
+        """Return how fast each direction leaves a surface on which the motion starts, shape (p,), zeros elsewhere."""
+        zero, *at = _switching_zero(begun, sign.name), *_start_of(begun)
+        value = _values_of(zero.problem, zero.program)
+        found = Variation(*zero[:2], (zero.output,), self.directions)(*at, self._moves[:, :, None])[0, :, 0]
+        least = ON_SURFACE * first_order_changes(value, *at, nominal_of(begun.whole))[0, 0]
+        is_there = begun.pattern[sign.name] == SLIDING or abs(value(*at)[0, 0]) <= least
+        return np.where(is_there & (np.abs(found * self._sizes) > least), found, 0.0)
+
+    def _reject_start(self, sign: Sign) -> None:
+        raise HolonomError(
+            ErrorKind.NO_SENSITIVITY,
+            detail=translatable("they depend on the side, as the motion starts where %(of)s is zero", of=sign.of),
         )
-        return _Zero(whole, program, *program.outputs)
+
+
+def _start_of(begun: Mode) -> tuple[Numbers, Numbers]:
+    """Return the initial time and state as arrays, shapes (1,) and (2n, 1)."""
+    t, state = start_of(begun.whole)
+    return np.array([t]), state[:, None]
+
+
+def _jump_between_sides(begun: Mode, name: str) -> Numbers:
+    """Return how much the rate of the state jumps at a switching surface, shape (2n,), zeros if it does not."""
+    sides = [problem_in(begun.whole, {**begun.pattern, name: side}) for side in (-1, 1)]
+    one, other = (_values_of(side, side.motion)(*_start_of(begun))[: len(side.coordinates), 0] for side in sides)
+    jump = one - other if np.max(np.abs(one - other)) > CONTINUOUS * np.max(np.abs([one, other])) else 0.0 * one
+    return np.concatenate([np.zeros(len(one)), jump])
+
+
+def _surface_rate(begun: Mode, sign: Sign, direction: Numbers) -> float:
+    """Return the derivative of a switching function along a direction of the state."""
+    zero = _switching_zero(begun, sign.name)
+    variation = Variation(*zero[:2], (zero.output,), begun.whole.state[:1])
+    return float(variation(*_start_of(begun), direction[:, None, None])[0, 0, 0])
+
+
+def _values_of(problem: MotionProblem, program: Program) -> Callable[[Numbers, Numbers], Numbers]:
+    """Return the outputs of one of a motion's programs, by times and states, without multipliers."""
+    inputs, evaluate = Inputs(problem), evaluation_once(problem, program, read_precision("double"))
+    return lambda times, states: np.array([as_floats(row) for row in evaluate(inputs(times, states))])
+
+
+def _switching_zero(mode: Mode, name: str) -> _Zero:
+    whole, pattern = mode.whole, mode.pattern
+    program = whole.once(
+        ("surface", name, frozenset(pattern.items())),
+        whole.switching,
+        lambda: switching_function(whole, "switch", name, pattern),
+    )
+    return _Zero(whole, program, *program.outputs)

@@ -479,3 +479,43 @@ def test_derivatives_end_at_a_flat_position():
         holonom.load("examples/linkage.mac").simulate(sensitivities=["m"], samples=2)
     assert caught.value.kind is ErrorKind.NO_SENSITIVITY
     assert float(caught.value.detail.split()[-1]) == pytest.approx(flat, rel=1e-3)
+
+
+RUBBED = """
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2 + {k}*dot(x)*dot(y))/2,
+  potential_energy = y - x, forces = [{x}, {y}])$
+scene : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$
+"""
+
+
+@pytest.mark.parametrize("k", ["0", "1/2"])
+@pytest.mark.parametrize(("x", "y"), [("-3/2*signum(dot(x))", "0"), ("-3/2*signum(dot(x))", "-2*signum(dot(y))")])
+def test_derivatives_by_the_velocity_of_what_sticks_were_those_of_a_body_that_slides_on(k, x, y):
+    """Pushed by eps, it stops within a multiple of eps, which is the error of the difference quotients."""
+    text, eps = RUBBED.format(k=k, x=x, y=y), 1e-5
+    pushed = text.replace("dot(x) = 0,", "dot(x) = 1/100000,")
+    ends = [holonom.system(each).simulate(tol=1e-14).report for each in (text, pushed)]
+    found = holonom.system(text).simulate(sensitivities=["dot(x)"]).report.sensitivities
+    for name in ("x", "y"):
+        quotient = (ends[1].coordinates[name] - ends[0].coordinates[name]) / eps
+        assert found[f"d({name}, dot(x))"] == pytest.approx(quotient, abs=10 * eps)
+    assert found["d(x, dot(x))"] == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("force", "by", "known"),
+    [
+        ("-signum(dot(x))/4", "dot(x)", False),  # d(dot(x), dot(x)) is 1 or 3/5
+        ("-signum(x)", "x", False),
+        ("-signum(dot(x))/4", "x", True),
+        ("-dot(x)*abs(dot(x))", "dot(x)", True),
+    ],
+)
+def test_derivatives_that_depend_on_the_side_were_those_of_one_side(force, by, known):
+    scene = holonom.system(RUBBED.format(k=0, x=force, y=0))
+    if known:
+        assert 0 < scene.simulate(sensitivities=[by]).report.sensitivities[f"d(x, {by})"] <= 1
+        return
+    with pytest.raises(HolonomError) as error:
+        scene.simulate(sensitivities=[by])
+    assert error.value.kind is ErrorKind.NO_SENSITIVITY
