@@ -444,7 +444,10 @@ class Sensitivities:
                 self._reject_start(sign)
 
     def _leaves(self, begun: Mode, sign: Sign) -> Numbers:
-        """Return how fast each direction leaves a surface on which the motion starts, shape (p,), zeros elsewhere."""
+        """Return how fast each direction leaves a surface on which the motion starts.
+
+        The shape is (p,). Elsewhere these are zeros.
+        """
         zero, *at = _switching_zero(begun, sign.name), *_start_of(begun)
         value = _values_of(zero.problem, zero.program)
         found = Variation(*zero[:2], (zero.output,), self.directions)(*at, self._moves[:, :, None])[0, :, 0]
@@ -466,7 +469,10 @@ def _start_of(begun: Mode) -> tuple[Numbers, Numbers]:
 
 
 def _jump_between_sides(begun: Mode, name: str) -> Numbers:
-    """Return how much the rate of the state jumps at a switching surface, shape (2n,), zeros if it does not."""
+    """Return the jump of the accelerations at a switching surface, as a rate of the state.
+
+    It has the shape (2n,).
+    """
     sides = [problem_in(begun.whole, {**begun.pattern, name: side}) for side in (-1, 1)]
     one, other = (_values_of(side, side.motion)(*_start_of(begun))[: len(side.coordinates), 0] for side in sides)
     jump = one - other if np.max(np.abs(one - other)) > CONTINUOUS * np.max(np.abs([one, other])) else 0.0 * one
@@ -481,7 +487,7 @@ def _surface_rate(begun: Mode, sign: Sign, direction: Numbers) -> float:
 
 
 def _values_of(problem: MotionProblem, program: Program) -> Callable[[Numbers, Numbers], Numbers]:
-    """Return the outputs of one of a motion's programs, by times and states, without multipliers."""
+    """Return the outputs of one of a motion's programs as a function of times and states."""
     inputs, evaluate = Inputs(problem), evaluation_once(problem, program, read_precision("double"))
     return lambda times, states: np.array([as_floats(row) for row in evaluate(inputs(times, states))])
 
