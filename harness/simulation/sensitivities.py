@@ -444,9 +444,9 @@ class Sensitivities:
                 self._reject_start(sign)
 
     def _leaves(self, begun: Mode, sign: Sign) -> Numbers:
-        """Return how fast each direction leaves a surface on which the motion starts.
+        """Return the changes of a sign's argument that is zero at the start, shape (p,).
 
-        The shape is (p,). Elsewhere these are zeros.
+        Elsewhere these are zeros.
         """
         zero, *at = _switching_zero(begun, sign.name), *_start_of(begun)
         value = _values_of(zero.problem, zero.program)
@@ -469,10 +469,7 @@ def _start_of(begun: Mode) -> tuple[Numbers, Numbers]:
 
 
 def _jump_between_sides(begun: Mode, name: str) -> Numbers:
-    """Return the jump of the accelerations at a switching surface, as a rate of the state.
-
-    It has the shape (2n,).
-    """
+    """Return the jump of the state's rate at a switching surface, shape (2n,)."""
     sides = [problem_in(begun.whole, {**begun.pattern, name: side}) for side in (-1, 1)]
     one, other = (_values_of(side, side.motion)(*_start_of(begun))[: len(side.coordinates), 0] for side in sides)
     jump = one - other if np.max(np.abs(one - other)) > CONTINUOUS * np.max(np.abs([one, other])) else 0.0 * one
@@ -487,7 +484,7 @@ def _surface_rate(begun: Mode, sign: Sign, direction: Numbers) -> float:
 
 
 def _values_of(problem: MotionProblem, program: Program) -> Callable[[Numbers, Numbers], Numbers]:
-    """Return the outputs of one of a motion's programs as a function of times and states."""
+    """Return a program's outputs as a function of times and states."""
     inputs, evaluate = Inputs(problem), evaluation_once(problem, program, read_precision("double"))
     return lambda times, states: np.array([as_floats(row) for row in evaluate(inputs(times, states))])
 
