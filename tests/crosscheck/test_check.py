@@ -5,6 +5,7 @@ nothing is missing and nothing too much is in test_skeleton.py.
 """
 
 import dataclasses
+from types import SimpleNamespace
 
 import pytest
 import sympy as sp
@@ -13,10 +14,12 @@ import holonom
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.draws import Draws
 from holonom.crosscheck.points import random_point
+from holonom.crosscheck.questions import holds_special_functions
 from holonom.crosscheck.report import EquationVerdict, Verdict
 from holonom.crosscheck.seed import fresh_seed
 from holonom.crosscheck.verdict import Comparison, Pair, verify
 from holonom.description import Description
+from holonom.expression.functions import FUNCTIONS
 from holonom.record import Equation, Record, Relation
 
 NUMERICAL = ("lagranges_method", "redundant_constraints")  # verdicts that are never proofs
@@ -107,3 +110,10 @@ motion : holonomic_scene(system, control_law = [u = -1 - t], parameter_values = 
   initial_state = [x = -1, dot(x) = 0], time_span = [0, 1])$""").check()
     assert not report.disagreements, [found for found in report.verdicts if found.verdict is Verdict.DISAGREES]
     assert Verdict.UNDECIDED not in {found.verdict for found in report.verdicts}
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.head)
+def test_special_functions_are_met_in_a_description_by_their_heads(function):
+    """Maxima takes minutes to evaluate one in 50 digits, which is therefore not asked for."""
+    description = SimpleNamespace(text=f'{{"forces": ["{function.head}", "t"]}}')
+    assert holds_special_functions(description) is function.special

@@ -41,3 +41,12 @@ def test_a_zero_that_rounding_left_by_luck_was_a_difference(lucky):
         yield "program", ComparedValue("a", rounding, mp.zero, rounding)
 
     assert first_differences(compared) == ({}, True)
+
+
+@pytest.mark.parametrize(("both", "size", "differ"), [(1, 1, True), (1, 10**20, False), (10**20, 1, False)])
+def test_a_difference_counts_relative_to_the_largest_of_values_and_size(both, size, differ):
+    def compared():
+        yield "program", ComparedValue("a", mp.mpf(both), both + mp.mpf(10) ** -40, mp.mpf(size))
+
+    found, regular = first_differences(compared)
+    assert (list(found), regular) == (["program"] if differ else [], True)
