@@ -13,6 +13,7 @@ After a block of steps the states are projected onto the constraints. `holonom.s
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,13 +35,14 @@ from .quantities import along_motion, expressions_of
 from .stack import FastestPlace
 
 ELEMENTS = 16  # of a batch: its states fit into the caches nearest to the processor, and calls are few
-TOGETHER = 32  # batches of the same number of steps that are looked at together
+TOGETHER = 32  # batches that are looked at together, at most; fewer of more steps than there is room for
 BLOCK = 512  # steps between projections
 MOST_BLOCKS = 64
 ROOM = 64  # steps for which there is room at first
 STRAYED = 1e-8  # relative distance from the constraints after a block that projection alone does not remove
 SMALL = 2.0**-200  # in which what is looked at along the motion is integrated: a power of two loses no digit
 ACCURACY_INTEGRALS = ("work", "squared_error")  # integrals behind the state
+NO_STEPS = (None, np.inf, 0.0, 0)  # of a block
 COMPACT_FROM = 1600  # operations by elements; heyoka's other mode compiles in their square, and runs a third faster
 
 Floats = NDArray[np.float64]
@@ -60,16 +62,8 @@ class BatchResult(NamedTuple):
     exchanged: Floats
 
 
-class _Recorded(NamedTuple):
-    """Numbers recorded of a batch of m motions after each step."""
-
-    series: Floats  # shape (steps, quantities, powers, m): Taylor coefficients of time derivatives, in `SMALL`
-    length: Floats  # shape (steps, m): of the steps
-    time: Floats  # shape (steps, m): at their ends
-
-    def of(self, elements: slice) -> "_Recorded":
-        """Return some of the motions."""
-        return _Recorded(*(each[..., elements] for each in self))
+Block = Sequence[tuple[Any, float, float, int]]
+"""For each element of a batch the outcome of a block, its shortest and longest step and their number."""
 
 
 class _Batch(NamedTuple):
@@ -77,16 +71,12 @@ class _Batch(NamedTuple):
 
     reached: Floats  # shape (stops, 2n + 2, m)
     well: NDArray[np.bool_]  # shape (m,)
-    shortest: Floats  # shape (m,): step
-    taken: NDArray[np.int64]  # shape (m,): steps
-    recorded: _Recorded | None
+    blocks: list[Block]
 
     def of(self, elements: slice) -> "_Batch":
         """Return some of the motions."""
-        recorded = None if self.recorded is None else self.recorded.of(elements)
-        return _Batch(
-            self.reached[:, :, elements], self.well[elements], self.shortest[elements], self.taken[elements], recorded
-        )
+        blocks = [block[elements] for block in self.blocks]
+        return _Batch(self.reached[:, :, elements], self.well[elements], blocks)
 
 
 class BatchEngine:
@@ -122,7 +112,7 @@ class BatchEngine:
         self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
         self._unit = unit_of(problem, self._nominal.time)  # of the integrator's time
         elements = self._elements = elements or ELEMENTS
-        self._along, self._look, self._size = len(along), look, len(problem.state)
+        self._along, self._size = len(along), len(problem.state)
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
         program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
@@ -146,7 +136,7 @@ class BatchEngine:
         self._pars = self._integrator.pars  # the last one is the energy at the initial time
         self._moving, self._behind = self._state[: self._size], self._size + len(ACCURACY_INTEGRALS)
         self._sizes = sizes_of_state(self._size, self._unit)[:, None]  # of the state in the integrator
-        self._recorder = _StepRecorder(self._integrator, self._behind) if along else None
+        self._recorder = _StepRecorder(self._integrator, self._behind, self._unit, look) if along else None
         self._place, self._inputs = FastestPlace(), Inputs(problem)
         self._energy = batch_evaluation(problem, computing(problem.energy, {"energy"}))
         self._corrections = None
@@ -172,7 +162,9 @@ class BatchEngine:
         """
         k, elements = states.shape[1], self._elements
         found, arrived = np.empty((len(stops), self._behind, k)), np.empty(k, dtype=bool)
-        shortest, taken, looking = np.empty(k), np.empty(k, dtype=int), _Looking(self._look, self._unit)
+        blocks, recorder = [], self._recorder
+        if recorder is not None:
+            recorder.clear()
         starts = np.concatenate([self._sizes * states, np.zeros((len(ACCURACY_INTEGRALS) + self._along, k))])
         ends = [stop / self._unit for stop in stops]
         begun = self._energies(self._start, states, values)
@@ -180,11 +172,13 @@ class BatchEngine:
         for first in range(0, k, elements):
             here = slice(first, min(first + elements, k))
             batch = self._place.call(partial(self._batch, starts[:, here], pars[:, here], _of(ends, here)))
-            found[:, :, here], arrived[here], shortest[here], taken[here], recorded = batch
-            if recorded is not None:
-                looking.add(here, recorded)
-        numbers = looking.numbers(k)
-        arrived &= ~np.isinf(numbers).any(axis=0)
+            found[:, :, here], arrived[here], blocks_here = batch
+            blocks.append(blocks_here)
+            if recorder is not None:
+                recorder.keep(here.stop - here.start)
+        numbers = np.empty((0, k)) if recorder is None else recorder.numbers()
+        steady, shortest, taken = _steps_taken(blocks)
+        arrived &= steady & ~np.isinf(numbers).any(axis=0)
         reached = self._on_constraints(found[:, : self._size] / self._sizes, values, stops, arrived)
         works, squares = np.moveaxis(found[:, self._size :], 1, 0) / SMALL
         gained = np.array([self._energies(*at, values) for at in zip(stops, reached, strict=True)]) - begun
@@ -236,26 +230,21 @@ class BatchEngine:
         integrator.set_time(self._start / self._unit)
         self._state[...], self._pars[...] = starts, pars
         reached, well = np.empty((len(stops), self._behind, self._elements)), np.ones(self._elements, dtype=bool)
-        shortest, longest = np.full(self._elements, np.inf), np.zeros(self._elements)
-        taken = np.zeros(self._elements, dtype=int)
+        blocks = []
         for place, stop in enumerate(stops):
             for _ in range(MOST_BLOCKS):
                 integrator.propagate_until(stop, max_steps=BLOCK, **options)
-                ends, ended = integrator.propagate_res, self._time == stop
-                arrived = ended.all()
-                if not arrived and (failing := np.array([end[0] not in self._unharmed for end in ends])).any():
-                    return failing, None
-                least, greatest, count = np.array([end[1:] for end in ends]).T
-                shortest, longest = np.minimum(shortest, least), np.maximum(longest, greatest)
-                well &= least * SHRUNK >= longest
-                taken += count.astype(int)
-                if arrived:
+                blocks.append(integrator.propagate_res)
+                ended = self._time == stop
+                if all(ended.tolist()):
                     break
+                if (failing := np.array([end[0] not in self._unharmed for end in blocks[-1]])).any():
+                    return failing, None
                 self._keep(~ended, well)
             else:
                 return ~ended, None
             reached[place] = self._state[: self._behind]
-        return None, _Batch(reached, well, shortest, taken, None if recorder is None else recorder.recorded())
+        return None, _Batch(reached, well, blocks)
 
     def _keep(self, elements: NDArray[np.bool_], well: NDArray[np.bool_]) -> None:
         """Project the elements whose block has ended before their motion."""
@@ -266,9 +255,23 @@ class BatchEngine:
             well &= ~(elements & strayed)
 
     def _nothing(self, stops: int, count: int) -> _Batch:
-        empty, none = np.full((1, self._along, 2, count), np.nan), np.zeros(count, dtype=int)
-        recorded = _Recorded(empty, empty[0, 0, :1], empty[0, 0, :1]) if self._along else None
-        return _Batch(np.full((stops, self._behind, count), np.nan), none == 1, np.full(count, np.nan), none, recorded)
+        reached = np.full((stops, self._behind, count), np.nan)
+        return _Batch(reached, np.zeros(count, dtype=bool), [[NO_STEPS] * count])
+
+
+def _steps_taken(batches: Sequence[Sequence[Block]]) -> tuple[NDArray[np.bool_], Floats, NDArray[np.int64]]:
+    """Return the steadiness, the shortest step and the number of steps.
+
+    One of each for each element: False where steps shrink suddenly.
+    """
+    steady, shortest, longest, taken = True, np.inf, 0.0, 0
+    for place in range(max(map(len, batches))):
+        there = (blocks[place] if place < len(blocks) else [NO_STEPS] * len(blocks[0]) for blocks in batches)
+        _, *numbers = zip(*chain.from_iterable(there), strict=True)
+        least, greatest, count = map(np.array, numbers)
+        shortest, longest = np.minimum(shortest, least), np.maximum(longest, greatest)
+        steady, taken = steady & (least * SHRUNK >= longest), taken + count
+    return steady, shortest, taken
 
 
 def _of(stops: Stops, elements: Any) -> Stops:
@@ -276,60 +279,8 @@ def _of(stops: Stops, elements: Any) -> Stops:
     return [stop if isinstance(stop, float) else stop[elements] for stop in stops]
 
 
-class _Looking:
-    """Numbers made of the quantities along motions, of many batches at once.
-
-    Parameters
-    ----------
-    look : callable
-        As for `BatchEngine`.
-    unit : float
-        Unit of the recorded times.
-    """
-
-    def __init__(self, look: Look, unit: float) -> None:
-        self._look, self._unit = look, unit
-        self._waiting: dict[tuple[int, ...], list[tuple[slice, _Recorded]]] = {}
-        self._made: list[tuple[slice, Floats]] = []
-
-    def add(self, here: slice, recorded: _Recorded) -> None:
-        """Add a batch, which is looked at with others of the same number of steps."""
-        alike = self._waiting.setdefault(recorded.series.shape[:-1], [])
-        alike.append((here, recorded))
-        if len(alike) == TOGETHER:
-            self._look_at(alike)
-
-    def numbers(self, k: int) -> Floats:
-        """Return the numbers of all motions, shape (numbers, k)."""
-        for alike in self._waiting.values():
-            if alike:
-                self._look_at(alike)
-        numbers = np.empty((len(self._made[0][1]) if self._made else 0, k))
-        for here, made in self._made:
-            numbers[:, here] = made
-        return numbers
-
-    def _look_at(self, alike: list[tuple[slice, _Recorded]]) -> None:
-        places, recorded = zip(*alike, strict=True)
-        joined = _Recorded(*(np.concatenate(each, axis=-1) for each in zip(*recorded, strict=True)))
-        ends = np.cumsum([len(each.length[0]) for each in recorded])
-        self._made += zip(places, np.split(self._look(_steps(joined, self._unit)), ends[:-1], axis=1), strict=True)
-        alike.clear()
-
-
-def _steps(recorded: _Recorded, unit: float) -> list[Steps]:
-    """Return each quantity along the motions, recorded with times in a unit."""
-    series, length, time = recorded
-    powers, rescaled = series.shape[2], rates_of(series.shape[2], 1 / (SMALL * unit))
-    made, middle = [], unit * (time - length)
-    for each in np.moveaxis(series, 0, 2):
-        coefficients = rescaled(np.concatenate([each, length[None]]).reshape(powers + 1, -1))
-        made.append(Steps(coefficients.reshape(each.shape), middle, unit * length, 0.0))
-    return made
-
-
 class _StepRecorder:
-    """A recorder of the polynomials of the quantities at each step.
+    """A recorder of quantities along motions, looked at for many batches at once.
 
     Parameters
     ----------
@@ -337,30 +288,98 @@ class _StepRecorder:
         The integrator.
     first : int
         Place in the state of the first of the quantities.
+    unit : float
+        Unit of the integrator's time.
+    look : callable
+        As for `BatchEngine`.
     """
 
-    def __init__(self, integrator: Any, first: int) -> None:
+    def __init__(self, integrator: Any, first: int, unit: float, look: Look) -> None:
         # views of what the last step leaves
         self._last = integrator.tc[first:, 1:], integrator.last_h, integrator.time
-        self._room = _Recorded(*(np.empty((ROOM, *each.shape)) for each in self._last))
-        self._rows = list(zip(*self._room, strict=True))
-        self._taken = 0
+        self._unit, self._look = unit, look
+        self._make_room(ROOM)
+        self.clear()
+
+    def _make_room(self, steps: int) -> None:
+        """Make room for batches of a number of steps."""
+        quantities, powers, elements = self._last[0].shape
+        room = max(1, TOGETHER * ROOM // steps), steps
+        # In `SMALL`, Taylor coefficients of the quantities' integrals, the linear one first, and lengths of the steps
+        self._series = np.empty((*room, quantities, powers + 1, elements))
+        self._times = np.empty((*room, elements))  # at the ends of the steps
+        self._rows = [
+            list(zip(series[:, :, :-1], series[:, :, -1], times, strict=True))
+            for series, times in zip(self._series, self._times, strict=True)
+        ]
+
+    def clear(self) -> None:
+        """Forget all batches."""
+        self._taken: list[int] = [0]  # steps of each batch
+        self._waiting: list[int] = []  # elements of each batch that waits to be looked at
+        self._made: list[Floats] = []
 
     def begin(self) -> Callable[[Any], bool]:
-        """Return a callback that records the steps of a new batch."""
+        """Return a callback that records the steps of a batch.
+
+        They replace those recorded since the last `keep`.
+        """
         return partial(next, self._recording())  # a generator is called faster than a method
 
     def _recording(self) -> Iterator[bool]:
         last_series, last_length, last_time = self._last
-        self._taken = 0
+        self._taken[-1] = 0
         while True:
-            for series, length, time in self._rows[self._taken :]:
+            for series, length, time in self._rows[len(self._waiting)][self._taken[-1] :]:
                 series[...], length[...], time[...] = last_series, last_length, last_time
-                self._taken += 1
+                self._taken[-1] += 1
                 yield True
-            self._room = _Recorded(*(np.concatenate([each, np.empty_like(each)]) for each in self._room))
-            self._rows = list(zip(*self._room, strict=True))
+            self._make_more_room()
 
-    def recorded(self) -> _Recorded:
-        """Return the steps of the last batch."""
-        return _Recorded(*(each[: self._taken].copy() for each in self._room))
+    def _make_more_room(self) -> None:
+        """Make room for more steps of the last batch, after a look at those before it."""
+        place, taken = len(self._waiting), self._taken[-1]
+        recorded = self._series[place], self._times[place]
+        self._look_at_waiting()
+        self._make_room(2 * taken)
+        self._series[0, :taken], self._times[0, :taken] = recorded
+        self._taken = [taken]
+
+    def keep(self, elements: int) -> None:
+        """Keep the first elements of the last batch, to be looked at with others."""
+        if not self._taken[-1]:  # no step, and so no numbers
+            self._series[len(self._waiting), 0], self._taken[-1] = np.nan, 1
+        self._waiting.append(elements)
+        if len(self._waiting) == len(self._series):
+            self._look_at_waiting()
+        self._taken.append(0)
+
+    def numbers(self) -> Floats:
+        """Return the numbers of all elements, shape (numbers, elements)."""
+        self._look_at_waiting()
+        return np.concatenate(self._made, axis=1)
+
+    def _look_at_waiting(self) -> None:
+        """Look at the batches that wait, steps of no length behind the shorter ones."""
+        count = len(self._waiting)
+        if not count:
+            return
+        most = max(self._taken[:count])
+        for series, times, taken in zip(self._series[:count], self._times, self._taken, strict=False):
+            series[taken:most], times[taken:most] = series[taken - 1], times[taken - 1]
+            series[taken:most, :, -1] = 0.0
+        series = self._series[:count, :most].transpose(2, 3, 1, 0, 4)
+        times = self._times[:count, :most].swapaxes(0, 1)
+        made = self._look(_steps(*(each.reshape(*each.shape[:-2], -1) for each in (series, times)), self._unit))
+        parts = np.split(made, count, axis=1)
+        self._made += [part[:, :elements] for part, elements in zip(parts, self._waiting, strict=True)]
+        self._taken, self._waiting = [], []
+
+
+def _steps(series: Floats, times: Floats, unit: float) -> list[Steps]:
+    """Return each quantity along the motions, recorded with times in a unit."""
+    made, rescaled = [], rates_of(series.shape[1] - 1, 1 / (SMALL * unit))
+    for each in series:
+        coefficients = rescaled(each.reshape(len(each), -1)).reshape(-1, *times.shape)
+        made.append(Steps(coefficients, unit * (times - each[-1]), unit * each[-1], 0.0))
+    return made

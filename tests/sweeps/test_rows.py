@@ -182,10 +182,12 @@ def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
 
 
 def test_rows_are_the_same_however_little_room_there_is_for_steps_at_first(rows_of, monkeypatch):
-    asked = "crane.mac", "max(abs(lambda1)),mean(y)", "m=50:500:8"
+    asked = "crane.mac", "max(abs(lambda1)),mean(y),zero(x-s-1/10)", "m=50:500:8"
     roomy = rows_of(*asked).table(0, 8)
     monkeypatch.setattr(batch_engine, "ROOM", 4)
-    assert rows_of(*asked).table(0, 8).equals(roomy)
+    monkeypatch.setattr(batch_engine, "TOGETHER", 48)  # batches of 4 steps: 3 of 64
+    for elements in (None, 2):
+        assert rows_of(*asked, elements=elements).table(0, 8).equals(roomy)
 
 
 def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scenes, monkeypatch):
