@@ -325,7 +325,7 @@ def _finding(left: Sequence[Number | None], right: Sequence[Number | None], comp
     if not coarse or _vanishes(coarse, fine):  # zero in each of the fewer numbers of digits
         return Found.EQUAL
     if not _is_same(coarse, fine):
-        return Found.UNSTABLE
+        return Found.UNSTABLE if abs(fine) > abs(coarse) else Found.NOTHING  # what shrinks may be a root of rounding
     return Found.DIFFERENT if complex_too or _is_real(*left) else Found.UNDERIVED
 
 

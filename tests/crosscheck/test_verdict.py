@@ -36,13 +36,16 @@ def test_rounding_of_large_terms_that_cancel_was_a_disagreement() -> None:
     assert "1.0e-40" in found.detail
 
 
-@pytest.mark.parametrize("power", [sp.Rational(1, 3), sp.Rational(1, 2)])
-def test_rounding_that_shrinks_slowly_is_no_difference(power) -> None:
-    """A root of a rounding error gains a share of the digits only; it is no number, but no other points have it."""
-    angles = sp.asin(X / 3) + sp.acos(X / 3)
-    rounding = sp.Abs(2 * angles - sp.pi) ** power
-    found = verify(compared(rounding * (1 + sp.sign(X - sp.Rational(1, 2))), sp.Integer(0)), "seed")
-    assert found.verdict is Verdict.UNDECIDED
+@pytest.mark.parametrize("power", [sp.Rational(1, 3), sp.Rational(1, 2), -1])
+def test_rounding_that_shrinks_slowly_is_no_difference_and_one_that_grows_is(power) -> None:
+    """A root of a rounding error gains a share of the digits only; its reciprocal has no value, and zero has one."""
+    hidden = sp.Abs(2 * sp.asin(X / 3) + 2 * sp.acos(X / 3) - sp.pi) ** power
+    expected = Verdict.UNDECIDED if power > 0 else Verdict.DISAGREES
+    assert verify(compared(hidden, sp.Integer(0)), "seed").verdict is expected
+    assert (
+        verify(compared(hidden * (1 + sp.sign(X - sp.Rational(1, 2))), sp.Integer(0)), "seed").verdict
+        is Verdict.UNDECIDED
+    )
 
 
 def test_a_root_of_what_is_zero_up_to_rounding_was_an_internal_error() -> None:
