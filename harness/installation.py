@@ -19,7 +19,7 @@ from .structs import entry
 
 # Names of the system's packages, by the command that installs them.
 INSTALLERS = {
-    "apt-get": ("apt-get install", {"maxima": "maxima", "cc": "gcc libc6-dev"}),
+    "apt-get": ("apt-get install", {"maxima": "maxima maxima-share", "cc": "gcc libc6-dev"}),
     "dnf": ("dnf install", {"maxima": "maxima", "cc": "gcc"}),
     "pacman": ("pacman -S", {"maxima": "maxima", "cc": "gcc"}),
     "brew": ("brew install", {"maxima": "maxima", "cc": "gcc"}),

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from importlib import metadata
@@ -27,6 +28,7 @@ from holonom.record import LARGEST_SIZE, LeftOut, read_record
 
 HOLONOM = [sys.executable, "-m", "holonom"]
 EXAMPLES = Path(__file__).parents[1] / "examples"
+SHARE = [str(folder) for folder in Path("/usr/share/maxima").glob("*/share")]
 
 
 def holonom(*arguments: str | Path, **options) -> subprocess.CompletedProcess[str]:
@@ -249,6 +251,16 @@ def test_doctor_tells_what_is_missing_and_the_command_that_installs_it(tmp_path)
     assert components["bwrap"]["hint"]
     assert components["sympy"]["version"] == metadata.version("sympy")
     assert "holonom[motion]" in components["heyoka"]["hint"]
+
+
+@pytest.mark.skipif(not (shutil.which("bwrap") and SHARE), reason="Maxima's share library cannot be hidden here")
+def test_doctor_misses_the_share_library_of_maxima(tmp_path):
+    hidden = ["bwrap", "--dev-bind", "/", "/", "--tmpfs", *SHARE]
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    command = [*hidden, sys.executable, "-m", "holonom", "doctor", "--json", "-"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    components = {each["name"]: each for each in json.loads(done.stdout)["components"]}
+    assert (done.returncode, components["maxima"]["version"]) == (1, None)
 
 
 def test_doctor_finds_this_installation_whole(holonom_here):
