@@ -217,7 +217,7 @@ def _switchings(switchings: "Sequence[Switching]") -> Iterator[str]:
 
 
 def _passed(outcome: str) -> str:
-    return {"sliding": "reached, and sliding begins", "released": "left again"}.get(outcome, outcome)
+    return {"sliding": "reached, and the motion stays on it", "released": "left again"}.get(outcome, outcome)
 
 
 HINT_OF_ROOT = (

@@ -48,6 +48,7 @@ from .place_and_reason import place_and_reason
 from .request import SimulationRequest
 from .residuals import residuals
 from .time_events import time_events
+from .uniqueness import differing_outputs
 from .zeros import ZERO, Crossing
 
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
@@ -106,6 +107,7 @@ class HybridMotion:
         self._zero = self._impulse = precision.number("0")
         self.switchings: list[Switching] = []
         self.intervals: list[ModeInterval] = []
+        self.undetermined: dict[str, None] = {}  # multipliers and outputs that contacts share in several ways
         problem = with_nominal(problem, self._span)
         self.nominal = nominal_of(problem)
         self._begin(problem)
@@ -424,6 +426,7 @@ class HybridMotion:
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
         shared = modes.shared(found, self._inputs(t, state)) if one else None
         if shared:
+            self.undetermined |= dict.fromkeys(differing_outputs(self.problem, found, self._precision, t, state))
             return shared
         if one:
             self._reject(t, translatable("%(sign)s stick, and may share the friction in several ways", sign=names))

@@ -77,8 +77,8 @@ class Report:
     controls: Mapping[str, Number] = entry("Empty where the scene does not observe them.", dict)
     outputs: Mapping[str, Number] = entry("Observed quantities with names of their own.", dict)
     undetermined: tuple[str, ...] = entry(
-        "Outputs that are not unique because constraints are redundant; all multipliers if contacts stuck together, "
-        "which may share their friction in several ways.",
+        "Outputs that are not unique because constraints are redundant, or because contacts stuck together, which may "
+        "share their friction in several ways; multipliers in the latter case, too.",
         (),
     )
     joints: Mapping[str, str] = entry(

@@ -13,7 +13,6 @@ import numpy as np
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import derivative_name
-from ..program.friction import STUCK
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
@@ -453,13 +452,13 @@ class _Simulation:
     def _undetermined(self, end: MotionState, mode: Mode) -> tuple[str, ...]:
         """Return the outputs that are not unique at the end.
 
-        All multipliers are not if contacts stick together. Some constraints may have ended by then.
+        Neither are those that contacts which stick together share. Some constraints may have ended by then.
         """
-        if any(STUCK.keys() & set(interval.mode.pattern.values()) for interval in self.motion.intervals):
-            return mode.problem.multipliers
         known = dict(zip(self.problem.multipliers, self.solutions.multipliers[:, -1], strict=True))
         multipliers = as_floats(np.array([known[name] for name in mode.problem.multipliers]))
-        return undetermined_outputs(mode.problem, end, as_floats(self.solutions.accelerations[:, -1]), multipliers)
+        accelerations = as_floats(self.solutions.accelerations[:, -1])
+        at_end = undetermined_outputs(mode.problem, end, accelerations, multipliers)
+        return tuple(dict.fromkeys((*self.motion.undetermined, *at_end)))
 
     def _errors(self, left: Mapping[str, float], start: MotionState, end: MotionState) -> Mapping[str, float]:
         """Return the errors of the quantities that the tolerance limits.

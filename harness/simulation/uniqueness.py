@@ -1,15 +1,20 @@
-"""Outputs that are not unique, because of multipliers of redundant constraints.
+"""Outputs that are not unique: of redundant constraints, and of contacts that stick.
 
 Reactions of joints are among them. All multipliers lambda + mu with J^T mu = 0 give the same motion. An output is
-unique if no mu changes it.
+unique if no mu changes it. Of contacts that stick together it is if the modes that agree have the same value.
 """
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from ..program.motion_problem import MotionProblem
-from ..program.precision import read_precision
+from ..program.precision import Precision, read_precision
+from ..program.sign_pattern import program_in
 from .constraints.directions import or_one
-from .evaluation import as_floats, evaluation_once
+from .evaluation import Numbers, as_floats, evaluation, evaluation_once
+from .friction_modes import Solution
 from .hard_cases import MotionState
 from .inputs import Inputs
 from .matrices import Vector
@@ -55,3 +60,47 @@ def undetermined_outputs(
     changes, terms = np.abs(slopes @ free), np.abs(slopes) @ np.abs(free)
     changed = (changes > UNCHANGED * terms + ROUNDING * terms.max(initial=0.0)).any(axis=1)
     return tuple(name for name, by in zip(problem.outputs.outputs, changed, strict=True) if by)
+
+
+def differing_outputs(
+    problem: MotionProblem, modes: Sequence[Solution], precision: Precision, t: Any, state: Numbers
+) -> tuple[str, ...]:
+    """Return the multipliers and outputs that depend on the mode of friction.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        With signs.
+    modes : sequence of Solution
+        The modes that agree.
+    precision : Precision
+        Numbers of the state.
+    t : number
+        Time of the state.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+
+    Returns
+    -------
+    tuple of str
+    """
+    found = [_outputs_in(problem, mode, precision, t, state) for mode in modes]
+    values = np.array([list(each.values()) for each in found])
+    differ = np.ptp(values, axis=0) > UNCHANGED * np.abs(values).max(axis=0)
+    return tuple(name for name, differs in zip(found[0], differ, strict=True) if differs)
+
+
+def _outputs_in(
+    problem: MotionProblem, mode: Solution, precision: Precision, t: Any, state: Numbers
+) -> dict[str, float]:
+    """Return the multipliers and outputs in one mode."""
+    inputs, motion = Inputs(problem, precision), program_in(problem, problem.motion, mode.pattern)
+    solved = dict(zip(motion.outputs, evaluation(motion, precision)(inputs(t, state)), strict=True))
+    multipliers = {name: solved.get(name, 0.0) for name in problem.multipliers}
+    if problem.outputs is None:
+        return multipliers
+    accelerations = np.array([solved[f"ddot({q})"] for q in problem.coordinates])
+    outputs = program_in(problem, problem.outputs, mode.pattern)
+    given = inputs(t, state, np.array(list(multipliers.values())), accelerations=accelerations)
+    found = as_floats(evaluation(outputs, precision)(given))
+    return multipliers | dict(zip(outputs.outputs, found, strict=True))

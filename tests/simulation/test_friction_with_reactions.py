@@ -345,3 +345,23 @@ def test_a_ladder_stands_until_its_climber_is_too_high(mu):
     falls = times > slips
     truth = solve_ivp(moved, (slips, times[-1]), (p0, 0), t_eval=times[falls], rtol=1e-11, atol=1e-13).y
     assert motion["p"][falls] == pytest.approx(truth[0], rel=1e-8)
+
+
+FEET = """
+system : holonomic_system(coordinates = [x1, y1, x2, y2],
+  kinetic_energy = (dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2)/2, potential_energy = 10*y1 + 20*y2,
+  constraints = [y1, y2, x2 - x1 - 1], forces = [pull = [t, 0, 0, 0],
+    floor = -3*[abs(lambda1)*signum(dot(x1)), 0, abs(lambda2)*signum(dot(x2)), 0]/10])$
+scene : holonomic_scene(system, initial_state = [x1 = 0, y1 = 0, y2 = 0, x2 = 1, dot(x1) = 0, dot(y1) = 0, dot(y2) = 0],
+  observe = [trajectory, multipliers, rod = lambda3, weight = lambda1 + lambda2])$
+"""
+
+
+def test_feet_that_share_friction_have_unique_weights():
+    """Truth: weights 10 and 20; the rod's force depends on the shares, until both slip at t = 3/10*(10 + 20)."""
+    motion = of_text(FEET).simulate(until=10, samples=11)
+    assert motion.report.undetermined == ("lambda3", "rod")
+    assert motion["lambda1"] == pytest.approx(10)
+    assert motion["weight"] == pytest.approx(30)
+    assert [each.t for each in motion.report.switchings] == pytest.approx([9, 9], rel=1e-9)
+    assert motion["x1"][-1] == pytest.approx(1 / 6 / 2, rel=1e-9)
