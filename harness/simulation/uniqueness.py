@@ -1,4 +1,4 @@
-"""Outputs that are not unique: of redundant constraints, and of contacts that stick.
+"""Outputs that are not unique: of redundant constraints, or of contacts.
 
 Reactions of joints are among them. All multipliers lambda + mu with J^T mu = 0 give the same motion. An output is
 unique if no mu changes it. Of contacts that stick together it is if the modes that agree have the same value.
