@@ -114,6 +114,12 @@ class DescribedEquations:
         takes = linear and bool(damping.is_positive_semidefinite)
         return not (takes and all(sp.simplify(each) == 0 for each in slopes - slopes.T))
 
+    @property
+    def changes_with_time(self) -> bool:
+        """True if the equations contain the time other than through the controls."""
+        time = sp.Symbol("t", real=True)
+        return bool(self.motion.scene.prescribed_reactions) or any(each.has(time) for each in self._smooth)
+
     @cached_property
     def reacting(self) -> list[int]:
         """Indices of multipliers that the scene does not prescribe."""
@@ -279,6 +285,7 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     Condition
     """
     yield from conditions_on_rates(equations, content)
+    yield from _conditions_on_rest(equations, content)
     N, mass = (
         np.array(content["basis"]).reshape(len(content["coordinates"]), -1),
         equations.at(content["point"])["mass"],
@@ -353,13 +360,19 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
         yield Condition("outputs of the scene in C and D", own - given, size)
 
 
+def _conditions_on_rest(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+    q, *moving = (
+        max((abs(content["point"][name]) for name in equations.names(group)), default=0.0)
+        for group in ("q", "v", "a", "du", "ddu")
+    )
+    changing = max(*moving, equations.changes_with_time)
+    yield Condition("rest", changing if content["at_rest"] else not changing, 1 + q)
+
+
 def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
     point, scene = content["point"], equations.motion.scene
     names = [name for group in ("q", "v", "a", "lambda", "u", "du", "ddu") for name in equations.names(group)]
     yield Condition("names of the point", set(point) != {"t", *names})
-    sizes = {group: max((abs(point[name]) for name in equations.names(group)), default=0.0) for group in "qva"}
-    moving = max(sizes["v"], sizes["a"])
-    yield Condition("rest", moving if content["at_rest"] else not moving, 1 + sizes["q"])
     if content["at"] is not None:
         yield Condition("time", content["at"] != point["t"])
         law = equations.law(point["t"])

@@ -47,7 +47,7 @@ def conditions_on_linearized_motion(equations: DescribedEquations, content: Mapp
     for k, (t, point) in enumerate(zip(times, points, strict=True)):
         here = {name: content[name][k] for name in AT_EACH_TIME}
         here |= {name: {rate: each[k] for rate, each in content[name].items()} for name in RATES}
-        here |= {"at": t, "point": point, "at_rest": not any(point.get(name) for name in (*v, *a))}
+        here |= {"at": t, "point": point}
         yield from conditions_on_rates(equations, names | here)
     n = len(q)
     C, transition = np.array(content["C"]), np.array(content["transition"])

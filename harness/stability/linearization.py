@@ -91,8 +91,9 @@ class Linearization(Documented, Shown):
     scene: str = entry("Name that the scene is assigned to.")
     at: float | None = entry("The time; null for an equilibrium.")
     at_rest: bool = entry(
-        "Whether velocities and accelerations vanish there; else A belongs to one time, and its eigenvalues do not "
-        "decide about stability."
+        "Whether velocities, accelerations and derivatives of controls vanish there, and the equations do not contain "
+        "the time; else A belongs to one time and to the coordinates xi, whose basis may change, and its eigenvalues "
+        "do not decide about stability."
     )
     coordinates: Names = entry("The n coordinates.")
     leading: Names = entry("The m coordinates that the tangent coordinates belong to.")
@@ -449,12 +450,10 @@ def linearization_of(
     Linearization
     """
     names, reacting = equations.coordinates, problem.independent[: equations.natural(problem.independent)]
-    nominal, velocities = nominal_of(problem), point.state[len(names) :]
-    moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
     return Linearization(
         problem.scene,
         at,
-        not moving.any(),
+        _is_at_rest(problem, equations, point),
         names,
         tuple(names[place] for place in tangent.leading),
         equations.controls,
@@ -465,6 +464,13 @@ def linearization_of(
         *_state_space(here, tangent, len(reacting) + len(equations.found)),
         _drawing(problem, equations, at),
     )
+
+
+def _is_at_rest(problem: MotionProblem, equations: LinearEquations, point: Point) -> bool:
+    nominal, velocities = nominal_of(problem), point.state[len(equations.coordinates) :]
+    moving = np.abs([velocities, point.accelerations]) > AT_REST * np.array([nominal.velocities, nominal.accelerations])
+    driven = point.controls[len(equations.controls) :]
+    return not (moving.any() or driven.any() or equations.changes_with_time)
 
 
 def _drawing(problem: MotionProblem, equations: LinearEquations, at: float | None) -> Drawing | None:

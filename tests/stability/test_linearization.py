@@ -9,8 +9,10 @@ from problems import problem
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
 import holonom
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.results import verify_result
 from holonom.failures import ErrorKind, HolonomError
-from holonom.formats import Publication, require
+from holonom.formats import Publication, published, require
 from holonom.program.numpy_function import NumpyFunction
 from holonom.stability.linearization import Linearization, state_at
 
@@ -335,6 +337,34 @@ def test_a_state_that_sticks_or_turns_is_refused(speed, at):
     with pytest.raises(HolonomError) as refused:
         holonom.system(DRY.format(speed=speed)).linearize(at=at)
     assert refused.value.kind is ErrorKind.NOT_ANALYTIC
+
+
+# ---- changes with time -----------------------------------------------------------------------------------------------
+
+DRIVEN = """system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = {mass}*dot(x)^2/2,
+  potential_energy = {stiffness}*x^2/2)$
+s : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize(
+    ("mass", "stiffness", "law", "resting"),
+    [
+        ("u^2", "4", "1 + t", False),
+        ("u^2", "4", "cos(t)", False),
+        ("1", "u", "1 + t", False),
+        ("u*(1 + t)^2", "4", "1", False),
+        ("u^2", "4", "1", True),
+    ],
+)
+def test_a_mass_at_rest_with_coefficients_that_change_is_not_at_rest(mass, stiffness, law, resting):
+    """With u = 1 + t, x'' = -2 x' - 4 x at first, but xi = u x has other eigenvalues, without a warning before."""
+    scene = holonom.system(DRIVEN.format(mass=mass, stiffness=stiffness, law=law))
+    found = scene.linearize()
+    assert (found.at_rest, "xi" in found.as_text()) == (resting, not resting)
+    document = json.loads(json.dumps(published(Publication.LINEARIZED, found.document())))
+    assert verify_result(scene.description, document).verdict is Verdict.AGREES
+    wrong = verify_result(scene.description, document | {"at_rest": not resting})
+    assert wrong.verdict is Verdict.DISAGREES
 
 
 # ---- the command -----------------------------------------------------------------------------------------------------
