@@ -60,7 +60,7 @@ def step_five(found) -> bool:
 
 def misprint(found) -> bool:
     """The difference of the multipliers under u0 + t is 2 dot(S)/(1 + 2 u^2)."""
-    lacking = 2 * found["rate"] / (1 + 2 * found["u"] ** 2)
+    lacking = 2 * found["S_dot"] / (1 + 2 * found["u"] ** 2)
     return np.abs(found["pushed"].multipliers["lambda1"] - found["printed_along"] - lacking).max() < 1e-9
 
 
