@@ -22,7 +22,7 @@ from ..program.request import Solve
 from ..series.power_series import MotionSeries
 from ..series.request import EXACT
 from .compared_values import differing
-from .described_motion import DescribedMotion
+from .described_motion import DescribedMotion, Residual
 from .digits import DIGITS
 from .irregular_point import IrregularPoint
 from .motion_program import OF_SPECIAL_FUNCTIONS, ProgramVerdict, ScenePrograms, why_missing
@@ -36,6 +36,7 @@ from .taylor import Polynomial, Taylor
 
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
+Complete = Callable[[Values, list[Polynomial]], Values]  # the series with the powers that follow from them
 SERIES, SERVO = "power series", "servo-constraints, along the motion"
 
 
@@ -196,8 +197,7 @@ def _compared(
     yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
-    curve |= continued(motion, curve, tuple(series.coordinates), ordered, ORDER)
-    yield from values_of_equations(motion, Taylor(ORDER + 2), curve, ordered)
+    yield from values_of_series(motion, curve, tuple(series.coordinates), ordered, ORDER)
 
 
 def _values_of_forces(
@@ -211,12 +211,12 @@ def _values_of_forces(
     if not given:
         return
 
-    def forces(values: Sequence[Polynomial], multipliers: list[Polynomial]) -> list[Polynomial]:
-        found = motion.constraint_forces(taylor, values, multipliers)
+    def forces(curve: Values, multipliers: list[Polynomial]) -> list[Polynomial]:
+        found = motion.constraint_forces(taylor, motion.values(taylor, curve), multipliers)
         return [found.get(q, (mp.zero,)) for q in motion.system.coordinates]
 
-    true = forces(motion.values(taylor, curve), multipliers)
-    changes = _changes(motion, taylor, curve, multipliers, true, forces)
+    true = forces(curve, multipliers)
+    changes = _changes(motion, taylor.order, curve, multipliers, true, forces)
     for name, row in given.items():
         s = int(name.removeprefix("Lambda[").removesuffix("]")) - 1
         for k, x in enumerate(numbers(row)):
@@ -230,13 +230,13 @@ def _start(series: MotionSeries, time: mp.mpf) -> dict[str, mp.mpf]:
     return found
 
 
-def continued(
+def values_of_series(
     motion: DescribedMotion, curve: Values, names: Sequence[str], multipliers: list[Polynomial], order: int
-) -> Values:
-    """Return series with the two powers that follow from the multipliers.
+) -> Iterator[ComparedValue]:
+    """Check that power series of rounded coefficients satisfy all equations.
 
-    With A and J at the initial time they satisfy A x = r and J x = s, where r contains the last coefficients of the
-    multipliers. The solution of (A + w J^T J) x = r + w J^T s satisfies both only if these are right.
+    The two powers of the coordinates that follow from the multipliers are disturbed as these are: their rounding is
+    among the sizes that the residuals are compared with.
 
     Parameters
     ----------
@@ -251,10 +251,25 @@ def continued(
     order : int
         Order of the series.
 
-    Returns
-    -------
-    Values
-        Series of these coordinates.
+    Yields
+    ------
+    ComparedValue
+        Coefficient of a residual.
+    """
+
+    def whole(curve: Values, multipliers: list[Polynomial]) -> Values:
+        return curve | _continued(motion, curve, names, multipliers, order)
+
+    yield from _values_of_equations(motion, Taylor(order + 2), curve, multipliers, whole)
+
+
+def _continued(
+    motion: DescribedMotion, curve: Values, names: Sequence[str], multipliers: list[Polynomial], order: int
+) -> Values:
+    """Return series with the two powers that follow from the multipliers.
+
+    With A and J at the initial time they satisfy A x = r and J x = s, where r contains the last coefficients of the
+    multipliers. The solution of (A + w J^T J) x = r + w J^T s satisfies both only if these are right.
     """
     rows = {name: tuple(curve[name][: order + 1]) for name in names}
     columns = _slopes(motion, curve, rows, multipliers)
@@ -296,58 +311,49 @@ def _largest(columns: Iterable[Sequence[mp.mpf]]) -> mp.mpf:
     return max((abs(x) for column in columns for x in column), default=mp.zero)
 
 
-def values_of_equations(
-    motion: DescribedMotion, taylor: Taylor, curve: Values, multipliers: list[Polynomial]
+def _values_of_equations(
+    motion: DescribedMotion, taylor: Taylor, curve: Values, multipliers: list[Polynomial], whole: Complete
 ) -> Iterator[ComparedValue]:
-    """Check that power series satisfy the equations of motion and all constraints.
+    """Check that power series satisfy the equations of motion and all constraints."""
+    places = [*motion.constraints, *motion.outputs]
 
-    Parameters
-    ----------
-    motion : DescribedMotion
-        The reference.
-    taylor : Taylor
-        Arithmetic up to the order of the series.
-    curve : Values
-        Series of the time, parameters, controls and coordinates.
-    multipliers : list of Polynomial
-        Series of the multipliers, in order.
+    def residuals(curve: Values, multipliers: list[Polynomial]) -> list[Residual]:
+        values = motion.values(taylor, whole(curve, multipliers))
+        sizes = motion.tape.sizes(taylor, values)
+        left = [Residual(values[place], sizes[place]) for place in places]
+        return motion.equations(taylor, values, multipliers) + left
 
-    Yields
-    ------
-    ComparedValue
-        Coefficient of a residual.
-    """
-    values = motion.values(taylor, curve)
-    sizes = motion.tape.sizes(taylor, values)
-    equations = motion.equations(taylor, values, multipliers)
-    before = [each.value for each in equations]
+    found = residuals(curve, multipliers)
+    before = [each.value for each in found]
     changes = _changes(
-        motion, taylor, curve, multipliers, before, lambda *at: [each.value for each in motion.equations(taylor, *at)]
+        motion, taylor.order, curve, multipliers, before, lambda *at: [each.value for each in residuals(*at)]
     )
-    for q, equation, change in zip(motion.system.coordinates, equations, changes, strict=True):
-        for k in range(taylor.order - 1):
-            value, size = _coefficient(equation.value, k), max(_coefficient(equation.size, k), change[k])
-            yield ComparedValue(f"power {k} of the equation of motion of {q}", value, mp.zero, size)
+    for (name, last), residual, change in zip(_named(motion, taylor.order), found, changes, strict=True):
+        for k in range(last + 1):
+            size = max(_coefficient(residual.size, k), change[k])
+            yield ComparedValue(f"power {k} of {name}", _coefficient(residual.value, k), mp.zero, size)
+
+
+def _named(motion: DescribedMotion, order: int) -> Iterator[tuple[str, int]]:
+    """Yield names of the equations and constraints, and the last powers that count."""
+    yield from ((f"the equation of motion of {q}", order - 2) for q in motion.system.coordinates)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
-        for beta, place in enumerate(places, 1):
-            for k in range(taylor.order + 1):
-                value = _coefficient(values[place], k)
-                yield ComparedValue(f"power {k} of {what} {beta}", value, mp.zero, _coefficient(sizes[place], k))
+        yield from ((f"{what} {beta}", order) for beta in range(1, len(places) + 1))
 
 
 def _changes(
     motion: DescribedMotion,
-    taylor: Taylor,
+    order: int,
     curve: Values,
     multipliers: list[Polynomial],
     before: Sequence[Polynomial],
-    made: Callable[[Sequence[Polynomial], list[Polynomial]], list[Polynomial]],
+    made: Callable[[Values, list[Polynomial]], list[Polynomial]],
 ) -> list[list[mp.mpf]]:
     """Return the sensitivity of results to relative changes of all coefficients.
 
     The coefficients are rounded.
     """
-    found = [[mp.zero] * (taylor.order + 1) for _ in before]
+    found = [[mp.zero] * (order + 1) for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
     for attempt in range(PERTURBATIONS):
         draw = random.Random(attempt)
@@ -355,10 +361,10 @@ def _changes(
         def moved(row: Polynomial, draw: random.Random = draw) -> Polynomial:
             return tuple(x * (1 + share * draw.choice((-1, 1)) * (1 + draw.random())) for x in row)
 
-        changed = curve | {q: moved(curve[q]) for q in motion.system.coordinates}
-        after = made(motion.values(taylor, changed), list(map(moved, multipliers)))
+        changed = curve | {q: moved(curve[q]) for q in (*motion.system.coordinates, *motion.freed)}
+        after = made(changed, list(map(moved, multipliers)))
         for own, *both in zip(found, before, after, strict=True):
-            for k in range(taylor.order + 1):
+            for k in range(order + 1):
                 old, new = (_coefficient(each, k) for each in both)
                 own[k] = max(own[k], abs(new - old) / share)
     return found
@@ -383,7 +389,7 @@ def _values_of_servo(
     multipliers = [computed[name] for name in motion.system.multipliers]
     curve = motion.parameters() | found | law | curve
     yield from _values_of_forces(motion, taylor, curve, multipliers, series.constraint_forces if series else {})
-    yield from values_of_equations(motion, taylor, curve, multipliers)
+    yield from _values_of_equations(motion, taylor, curve, multipliers, lambda curve, _: curve)
 
 
 def _values_of_rows(rows: Mapping[str, Sequence[str]], true: Values, largest: mp.mpf) -> Iterator[ComparedValue]:

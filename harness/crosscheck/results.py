@@ -29,7 +29,7 @@ from .irregular_point import IrregularPoint
 from .law import Law
 from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
 from .linearized_along import conditions_on_linearized_motion
-from .motion_series import continued, digits_of, values_of_equations
+from .motion_series import digits_of, values_of_series
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .taylor import Polynomial, Taylor
@@ -184,8 +184,7 @@ def _residuals(motion: DescribedMotion, content: Content, direction: str, step: 
     curve = parameters | motion.law.at(Taylor(order + 3), time, parameters) | {"t": (time, mp.one)}
     curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
     multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
-    curve |= continued(motion, curve, tuple(content["coordinates"]), multipliers, order)
-    yield from values_of_equations(motion, Taylor(order + 2), curve, multipliers)
+    yield from values_of_series(motion, curve, tuple(content["coordinates"]), multipliers, order)
 
 
 def _small() -> mp.mpf:

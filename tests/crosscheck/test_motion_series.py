@@ -51,6 +51,35 @@ def changed(found: SceneSeries, draw: random.Random) -> SceneSeries:
     return replace(found, series=replace(found.series, **{group: rows | {name: tuple(row)}}))
 
 
+IRRATIONAL = """load("holonom.mac")$
+system : holonomic_system(coordinates = [y, w], controls = [u], parameters = [k],
+  kinetic_energy = (dot(y)^2 + dot(w)^2)/2, potential_energy = k*(y - w)^2/2, {forces}
+  constraints = [w - u])$
+scene : holonomic_scene(system, control_law = [u = 1 - cos(t)], parameter_values = [k = 2000],
+  initial_state = [y = sqrt(2), dot(y) = 0], initial_guess = [w = 0, dot(w) = 0], time_span = [0, 4])$"""
+DAMPING = "forces = [-k*(dot(y) - dot(w)), k*(dot(y) - dot(w))],"
+
+
+@pytest.mark.parametrize("forces", ["", DAMPING], ids=["undamped", "stiff"])
+def test_rounding_of_large_terms_in_a_small_residual_is_found_no_error(forces, tmp_path):
+    """w is small, and follows from a large multiplier and a large force of the spring, rounded to 30 digits."""
+    scene = tmp_path / "scene.mac"
+    scene.write_text(IRRATIONAL.format(forces=forces))
+    source = Source(scene)
+    (found,) = read_motions(source.description(), ask_for_check(source, {})).series
+
+    def verdict(each: SceneSeries) -> Verdict:
+        return verify_series(source.description(), [each])[0].found.verdict
+
+    assert verdict(found) is Verdict.AGREES
+    for group, name in (("coordinates", "y"), ("coordinates", "w"), ("multipliers", "lambda1")):
+        rows = getattr(found.series, group)
+        row = list(rows[name])
+        row[6] = str(Fraction(row[6]) * (1 + Fraction(1, 10**6)))
+        wrong = replace(found, series=replace(found.series, **{group: rows | {name: tuple(row)}}))
+        assert verdict(wrong) is Verdict.DISAGREES
+
+
 @pytest.mark.parametrize("name", ["arm", "overhead_crane"])
 def test_wrong_controls_of_servo_constraints_are_found(name):
     source = Source(EXAMPLES / f"{name}.mac")
