@@ -35,11 +35,12 @@ from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
 from .place_and_reason import place_and_reason
 from .request import FINAL_STATE_ALONE, SimulationRequest
-from .time_dependence import time_dependence
+from .time_dependence import TimeDependence, time_dependence
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
 
 UNIQUE = "unique"  # name of the switching surfaces on which accelerations cease to be unique
+TOO_OFTEN = translatable("a switching function of the time changes its sign too often to be followed")
 NO_ROUNDING: Mapping[str, float] = {}
 FREE = 1e-12  # of the nominal size of a multiplier: no reaction
 
@@ -134,15 +135,24 @@ class Mode:
         self._start, self._end = float(problem.start["t"]), float(end)
         self._vanishing = vanishing_times(self.problem, self.matrices, laws_of(problem), self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
+        until = min([self._end, *to_come])
         self.by_time = time_dependence(
-            program_with_values(self.problem, self.problem.matrices),
-            self._start,
-            min([self._end, *to_come]),
-            self.problem.tables,
-        )
+            program_with_values(self.problem, self.problem.matrices), self._start, until, self.problem.tables
+        ).ended_by(self._dependence_of_signs(until))
         ends = () if self.by_time.end is None else (self.by_time.end,)
         before = (shortly_before(t, self._start) for t in self._vanishing)
         self.stops = sorted({*self.by_time.stops, *ends, *before})
+
+    def _dependence_of_signs(self, until: float) -> TimeDependence:
+        """Return the dependence of switching functions of time, but of time events."""
+        whole = self.whole
+        signs = {f"switch[{i}]": sign for i, sign in enumerate(whole.signs, 1) if sign.by is DependsOn.TIME}
+        names = {output for output, sign in signs.items() if sign.name not in self._time_events}
+        if not names:
+            return TimeDependence()
+        functions = program_in(whole, computing(whole.switching, names), self.pattern)
+        found = time_dependence(program_with_values(whole, functions), self._start, until, whole.tables)
+        return found if found.unresolved is None else TimeDependence(end=found.unresolved, reason=TOO_OFTEN)
 
     @cached_property
     def switching_functions(self) -> SwitchingFunctions:

@@ -59,6 +59,21 @@ class TimeDependence(NamedTuple):
     reason: str = ""  # a clause about that time
     unresolved: float | None = None  # the first time from which an expression changes too fast to be looked at
 
+    def ended_by(self, other: "TimeDependence") -> "TimeDependence":
+        """Return this dependence, with the first end of both.
+
+        Parameters
+        ----------
+        other : TimeDependence
+
+        Returns
+        -------
+        TimeDependence
+        """
+        if other.end is None or (self.end is not None and self.end <= other.end):
+            return self
+        return self._replace(end=other.end, reason=other.reason)
+
 
 def time_dependence(program: Program, start: float, end: float, tables: Sequence[Table] = ()) -> TimeDependence:
     """Examine the expressions of time alone, ``t``, and of tables in a program.
