@@ -127,7 +127,7 @@ def equilibria(
     if plot_file is not None and over is None:
         raise click.UsageError("--plot draws what --over asks for")
     require_formats(None, plot_file)
-    values = {name: float(Fraction(text)) for name, text in read_settings(controls).items()}
+    values = {name: Fraction(text) for name, text in read_settings(controls).items()}
     scene = _described(scene_file, request, limits)
     if over is None:
         found = scene.equilibria(**options, **values)

@@ -11,6 +11,7 @@ Residuals and gradients are SymPy's, of the description alone. Nothing is solved
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -126,13 +127,13 @@ class DescribedEquations:
         given = self.motion.scene.prescribed_reactions
         return [beta for beta, name in enumerate(self.multipliers) if name.name not in given]
 
-    def at_rest(self, controls: Mapping[str, float]) -> list[sp.Expr]:
+    def at_rest(self, controls: Mapping[str, float | str]) -> list[sp.Expr]:
         """Return the exact equations of states at rest.
 
         Parameters
         ----------
-        controls : mapping of str to float
-            Constant values, exactly.
+        controls : mapping of str to float or str
+            Constant values, as they are written.
 
         Returns
         -------
@@ -140,7 +141,7 @@ class DescribedEquations:
             Functions of the coordinates and multipliers that vanish.
         """
         moving = [symbol for group in ("v", "a", "du", "ddu") for symbol in self._groups[group]]
-        constant = {sp.Symbol(name, real=True): sp.Rational(value) for name, value in controls.items()}
+        constant = {sp.Symbol(name, real=True): sp.Rational(str(value)) for name, value in controls.items()}
         time = {sp.Symbol("t", real=True): sp.Rational(float(self.motion.first_time))}
         return [each.subs(dict.fromkeys(moving, 0) | constant | time) for each in self._at_rest]
 
@@ -515,7 +516,10 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
     yield Condition("complete", content["complete"] != (len(found) == content["count"] and all(_of(found, "isolated"))))
     yield Condition("names", _of(found, "name") != [f"e{k}" for k in range(1, len(found) + 1)])
     yield from _conditions_on_turns(equations, content, at_rest)
-    equations_at_rest = equations.at_rest(controls)
+    rational = content["rational"]
+    wrong = any(u not in controls or float(Fraction(x)) != controls[u] for u, x in rational.items())
+    yield Condition("rational controls", wrong or (rational.keys() != controls.keys() and any(_of(found, "exact"))))
+    equations_at_rest = equations.at_rest(controls | rational)
     if content["count"] is not None:
         count = count_real_solutions(equations_at_rest, _symbols((*q, *reactions)))
         if count is None:  # of dependent constraints, some multipliers are chosen as zero

@@ -170,12 +170,15 @@ def _exact_values(equilibrium: "Equilibrium") -> "Iterator[str]":
 def _number_of(equilibria: "Equilibria") -> str:
     """Return a message on the number of equilibria found, and on their completeness."""
     found = f"{len(equilibria)} found from {equilibria.starts} starts"
+    rounded = ", ".join(u for u in equilibria.controls if u not in equilibria.rational)
+    rounded = f" for {rounded} as rounded" if rounded else ""
     if equilibria.complete:
-        return f"{found}; these are all: the equations have exactly {counted(len(equilibria), 'real solution')}."
+        solutions = counted(len(equilibria), "real solution")
+        return f"{found}; these are all: the equations have exactly {solutions}{rounded}."
     if equilibria.count is None:
         return f"{found}; there may be others."
     elsewhere = "" if equilibria.regular else ", but places where gradients of the constraints depend are not examined"
-    return f"{found}; the equations have exactly {counted(equilibria.count, 'real solution')}{elsewhere}."
+    return f"{found}; the equations have exactly {counted(equilibria.count, 'real solution')}{rounded}{elsewhere}."
 
 
 def _title(found: "Linearization") -> str:

@@ -16,6 +16,7 @@ Otherwise the stability is undecided.
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from fractions import Fraction
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,7 +26,7 @@ import scipy.linalg
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import MotionProblem, require_analytic, require_laws
-from ..schema import PAIRS
+from ..schema import PAIRS, NumberText
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
 from ..simulation.evaluation import one_blas_thread
@@ -39,6 +40,8 @@ from .tangent import Tangent
 
 if TYPE_CHECKING:
     from sympy import Expr
+
+    from .real_solutions import RealSolutions
 
 SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' nominal sizes
 ITERATIONS = 60
@@ -113,6 +116,10 @@ class Equilibria(Documented, Shown):
 
     scene: str = entry("Name that the scene is assigned to.")
     controls: Mapping[str, float] = entry("Values of the controls.")
+    rational: Mapping[str, NumberText] = entry(
+        "Exact values of the controls that are known to be rational numbers. If others exist, count belongs to their "
+        "values in controls, and exact values are left out."
+    )
     starts: int = entry("Random starts of Newton's method.", minimum=1)
     found: tuple[Equilibrium, ...] = entry(
         "Those found, of each family that is not isolated one; there may be others unless complete is true."
@@ -188,8 +195,6 @@ def find_equilibria(
     HolonomError
         The equations contain the time, a control has no value, or the motion is not analytic.
     """
-    from .real_solutions import solve_exactly
-
     require_analytic(problem)
     require_laws(problem)
     if equations.changes_with_time:
@@ -201,17 +206,40 @@ def find_equilibria(
     found, *left_out = search.equilibria(points, same)
     turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
     names = turns, tuple(reversals)
-    solutions = solve_exactly(equations, problem.independent, list(values.values()))
+    rational = _rational(problem, equations, controls)
+    solutions = _all_solutions(problem, equations, values | rational)
+    first = problem.scene, values, {u: str(x) for u, x in rational.items()}, starts
     if solutions is None:
-        return Equilibria(problem.scene, values, starts, found, *left_out, *names, None, False)
-    exact = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
+        return Equilibria(*first, found, *left_out, *names, None, False)
+    if rational.keys() == values.keys():
+        found = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
     count = solutions.count >> len(reversals)
-    return Equilibria(problem.scene, values, starts, exact, *left_out, *names, count, solutions.regular)
+    return Equilibria(*first, found, *left_out, *names, count, solutions.regular)
+
+
+def _all_solutions(
+    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float | Fraction]
+) -> "RealSolutions | None":
+    from .real_solutions import solve_exactly
+
+    return solve_exactly(equations, problem.independent, [Fraction(str(x)) for x in controls.values()])
+
+
+def _rational(problem: MotionProblem, equations: LinearEquations, given: Mapping[str, float]) -> dict[str, Fraction]:
+    """Return the controls whose values are known to be rational.
+
+    Given numbers are those that are written.
+    """
+    from .real_solutions import rational_controls
+
+    law = {} if given.keys() >= set(equations.controls) else rational_controls(equations, problem.start["t"])
+    known = law | {u: Fraction(str(x)) for u, x in given.items()}
+    return {u: known[u] for u in equations.controls if u in known}
 
 
 def _constant_controls(
     problem: MotionProblem, equations: LinearEquations, given: Mapping[str, float]
-) -> Mapping[str, float]:
+) -> dict[str, float]:
     for name in given:
         if name not in equations.controls:
             raise HolonomError(ErrorKind.NOT_A_CONTROL, detail=name)

@@ -1,8 +1,8 @@
 """Exact number and values of equilibria of small polynomial equations.
 
 The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. A coordinate that occurs in
-its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control is the rational
-number that its floating-point value is. From a Groebner basis over the rational numbers follow:
+its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control not known to be
+rational is the decimal number that is written. From a Groebner basis over the rational numbers follow:
 
 - There are finitely many complex solutions if and only if a power of each unknown is a leading monomial (Cox, Little &
   O'Shea, Ideals, Varieties, and Algorithms, section 5.3, theorem 6).
@@ -124,7 +124,7 @@ def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
 
 
 def solve_exactly(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction]
 ) -> RealSolutions | None:
     """Count the states at rest for constant controls.
 
@@ -134,7 +134,7 @@ def solve_exactly(
         Of the scene.
     independent : sequence of int
         Indices of independent constraints, counted from 0. The multipliers of the others are zero.
-    controls : sequence of float
+    controls : sequence of Fraction
         Constant values, in the order of the equations.
 
     Returns
@@ -156,6 +156,30 @@ def solve_exactly(
         return None
     regular = _are_regular([gradients[beta] for beta in independent], constraints)
     return RealSolutions(_count_real_zeros(basis, standard), regular, basis, standard)
+
+
+def rational_controls(equations: LinearEquations, t: str) -> dict[str, Fraction]:
+    """Return the controls that are known to be rational at a time.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+        Of the scene.
+    t : str
+        The time, a rational number.
+
+    Returns
+    -------
+    dict of str to Fraction
+        By name, without those whose law has other functions than polynomials.
+    """
+    if equations.law is None:
+        return {}
+    program, (polynomials, _) = computing(equations.law, set(equations.controls)), ring("t", QQ, grevlex)
+    inputs = dict.fromkeys(program.inputs, UNDEFINED) | {"t": polynomials(QQ(*Fraction(t).as_integer_ratio()))}
+    found = run_program(program, inputs, _arithmetic(polynomials))
+    numbers = {name: QQ(value.coeff(1)) for name, value in found.items() if value is not UNDEFINED}
+    return {name: Fraction(int(each.numerator), int(each.denominator)) for name, each in numbers.items()}
 
 
 def _are_small(polynomials: Sequence[Any]) -> bool:
@@ -208,7 +232,7 @@ def _minors(rows: Sequence[Sequence[PolyElement]], ring: PolyRing) -> list[PolyE
 
 
 def _polynomials(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[float]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction]
 ) -> tuple[list[Any], list[Any], list[list[Any]]]:
     """Return r and f at rest, and the gradients of f.
 
@@ -230,7 +254,7 @@ def _polynomials(
     polynomials, *generators = ring(unknowns, QQ, grevlex)
     inputs = dict.fromkeys(program.inputs, polynomials.zero) | dict(zip(unknowns, generators, strict=True))
     inputs |= dict.fromkeys(angles, UNDEFINED)
-    values = (polynomials(QQ(*Fraction(value).as_integer_ratio())) for value in controls)
+    values = (polynomials(QQ(value.numerator, value.denominator)) for value in controls)
     inputs |= dict(zip(equations.controls, values, strict=True))
     found = run_program(_with_angles(program, angles), inputs, _arithmetic(polynomials))
     circles = [inputs[f"cos({name})"] ** 2 + inputs[f"sin({name})"] ** 2 - 1 for name in angles]

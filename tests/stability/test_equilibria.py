@@ -1,7 +1,9 @@
 """Equilibria against closed forms, and their stability against the theorems' textbook cases."""
 
+import copy
 import json
 import random
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -13,8 +15,10 @@ from sympy.polys.rings import ring
 from test_linearization import DOUBLE_PENDULUM
 
 import holonom
+from holonom.crosscheck.report import Verdict
+from holonom.crosscheck.results import verify_result
 from holonom.failures import ErrorKind, HolonomError
-from holonom.formats import Publication, require
+from holonom.formats import Publication, published, require
 from holonom.stability.equilibria import Equilibria, Stability
 from holonom.stability.real_solutions import _count_real_zeros, _standard_monomials
 
@@ -239,6 +243,31 @@ def test_exact_values_of_a_particle_on_a_sphere_are_rational():
         (0, third, 0): 1,
         (0, 0, third): sp.Rational(3, 2),
     }
+
+
+@pytest.mark.parametrize(
+    ("law", "given", "value"),
+    [
+        ("1 - cos(t + 1)", {}, None),
+        ("1/3 + t", {}, sp.Rational(1, 3)),
+        ("1/10", {}, sp.Rational(1, 10)),
+        ("1 - cos(t + 1)", {"u": 0.1}, sp.Rational(1, 10)),
+        ("1 - cos(t + 1)", {"u": Fraction(1, 3)}, sp.Rational(1, 3)),
+    ],
+)
+def test_exact_values_need_exact_controls(law, given, value):
+    """The double 1 - cos(1), written as a fraction, was called exact."""
+    scene = holonom.system(f"""system : holonomic_system(coordinates = [x, y], controls = [u],
+      kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [V = x^2], constraints = [y - u])$
+    s : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$""")
+    found = scene.equilibria(**given)
+    assert (found["e1"].exact.get("y"), found.count) == (value, 1)
+    assert found["e1"].coordinates["y"] == pytest.approx(float(value or found.controls["u"]))
+    document = json.loads(json.dumps(published(Publication.EQUILIBRIA, found.document())))
+    assert verify_result(scene.description, document).verdict is Verdict.AGREES
+    wrong = copy.deepcopy(document)
+    wrong["rational"] = {} if document["rational"] else {"u": "1/2"}
+    assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES
 
 
 def test_exact_angles_beyond_the_fork_are_arc_cosines():
