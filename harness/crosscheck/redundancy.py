@@ -8,7 +8,9 @@ well, the rank of the gradients of all constraints is the number of independent 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+from itertools import islice
 from typing import NamedTuple
 
 import sympy as sp
@@ -35,6 +37,9 @@ DRAWS = 60
 """Configurations from which one on the manifold is looked for."""
 
 
+Configuration = Mapping[sp.Symbol, sp.Expr]
+
+
 class Ranks(NamedTuple):
     """Ranks of the mass matrix and of the constraint gradients at a configuration.
 
@@ -50,7 +55,7 @@ def verify_redundancy(
     described: MechanicalSystem,
     independent: Sequence[str],
     regular: bool,
-    starts: Sequence[Mapping[sp.Symbol, sp.Expr]],
+    starts: Sequence[Configuration],
     seed: str,
 ) -> CheckResult:
     """Return the verdict on redundant constraints and the kind of the mass matrix.
@@ -71,28 +76,31 @@ def verify_redundancy(
     Returns
     -------
     CheckResult
-        Agreement, disagreement with the reason, or undecided.
+        Agreement, disagreement with the reason, or undecided. Undecided, too, is what is true of random parameters and
+        not of those of the scenes.
     """
     manifold = _Manifold(described, independent)
-    with mp.workdps(WORKING_DIGITS):
-        found = []
-        for point in _configurations(manifold.names, described, starts, seed):
-            if (ranks := manifold.ranks_near(point)) is not None:
-                found.append(ranks)
-            if len(found) == CONFIGURATIONS:
-                break
+    found = manifold.ranks_at_some(_configurations(manifold.names, described, starts, seed))
     if not found and manifold.only_independent_hold:
         detail = translatable("where the independent constraints hold, the others do not")
         return CheckResult(Verdict.DISAGREES, DIGITS, manifold.only_independent_hold, detail)
     if not found:
         reason = translatable("no configuration was found that satisfies all constraints")
         return CheckResult(Verdict.UNDECIDED, None, None, reason)
-    largest = Ranks(*(max(ranks) for ranks in zip(*found, strict=True)))
-    detail = _contradiction(largest, len(independent), len(described.coordinates), regular)
+    contradiction = partial(_contradiction, len(independent), len(described.coordinates), regular)
+    detail = contradiction(found)
+    states = _states_alone(described, starts)
+    if detail and states != starts:
+        general = manifold.ranks_at_some(_configurations(manifold.names, described, states, seed))
+        if general and not contradiction(general):
+            reason = translatable("so for random parameters; for those of the scenes, %(detail)s", detail=detail)
+            return CheckResult(Verdict.UNDECIDED, None, None, reason)
     return CheckResult(Verdict.DISAGREES if detail else Verdict.AGREES, DIGITS, len(found), detail)
 
 
-def _contradiction(found: Ranks, independent: int, coordinates: int, regular: bool) -> str:
+def _contradiction(independent: int, coordinates: int, regular: bool, at: Sequence[Ranks]) -> str:
+    """Return a contradiction of the largest ranks to the record, or an empty text."""
+    found = Ranks(*(max(ranks) for ranks in zip(*at, strict=True)))
     if found.every != independent or found.independent != independent:
         return translatable(
             "%(every)s constraints are independent, and %(found)s of the %(independent)s listed as such",
@@ -120,7 +128,13 @@ class _Manifold:
         self.names = sorted({x.name for x in symbols | {*q}} - {x.name for x in v})
         self.only_independent_hold = 0  # configurations where the independent constraints hold, and not all others
 
-    def ranks_near(self, point: Point) -> Ranks | None:
+    def ranks_at_some(self, points: Iterable[Point]) -> list[Ranks]:
+        """Return ranks near the first points that lead to the manifold."""
+        with mp.workdps(WORKING_DIGITS):
+            found = (ranks for point in points if (ranks := self._ranks_near(point)) is not None)
+            return list(islice(found, CONFIGURATIONS))
+
+    def _ranks_near(self, point: Point) -> Ranks | None:
         """Return ranks at a configuration of the manifold near a point, or None."""
         state: State = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         try:
@@ -135,13 +149,13 @@ class _Manifold:
 
 
 def _configurations(
-    names: Sequence[str], system: MechanicalSystem, starts: Sequence[Mapping[sp.Symbol, sp.Expr]], seed: str
+    names: Sequence[str], system: MechanicalSystem, starts: Sequence[Configuration], seed: str
 ) -> Iterator[Point]:
     """Yield points a random step away from the initial configurations.
 
     Unknown values are random.
     """
-    moving = {system.time, *system.coordinates, *system.controls}
+    moving = _moving(system)
     exact = [_rational_values(start) for start in starts]
     for attempt in range(DRAWS):
         known = exact[attempt % len(exact)] if exact else {}
@@ -150,7 +164,17 @@ def _configurations(
         yield {x: known[x] + (STEP * step[x] if x in moving else 0) if x in known else drawn[x] for x in drawn}
 
 
-def _rational_values(start: Mapping[sp.Symbol, sp.Expr]) -> dict[sp.Symbol, sp.Rational]:
+def _moving(system: MechanicalSystem) -> set[sp.Symbol]:
+    return {system.time, *system.coordinates, *system.controls}
+
+
+def _states_alone(system: MechanicalSystem, starts: Sequence[Configuration]) -> list[Configuration]:
+    """Return configurations without the values of parameters."""
+    moving = _moving(system)
+    return [{x: value for x, value in start.items() if x in moving} for start in starts]
+
+
+def _rational_values(start: Configuration) -> dict[sp.Symbol, sp.Rational]:
     with mp.workdps(WORKING_DIGITS):
         values = Steps(list(start.values())).at({})
     return {

@@ -47,3 +47,26 @@ def test_a_constraint_that_follows_and_is_not_listed_is_found(record, scene):
     derived = dataclasses.replace(record.derivations[0], redundant=())
     found = verdicts_of(dataclasses.replace(record, derivations=(derived,)), scene)
     assert found["redundant_constraints"] in (Verdict.DISAGREES, Verdict.UNDECIDED)
+
+
+GUIDES = """
+system : holonomic_system(coordinates = [x, y], parameters = [a], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [y - x, {second}])$
+scene : holonomic_scene(system, parameter_values = [a = {a}],
+  initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+@pytest.mark.parametrize(("a", "verdict"), [(1, Verdict.UNDECIDED), (2, Verdict.AGREES)])
+def test_constraints_that_are_independent_but_for_the_value_of_a_parameter(a, verdict):
+    scene = holonom.system(GUIDES.format(second="y - a*x", a=a))
+    assert scene.record.derivations[0].redundant == ()
+    assert verdicts_of(scene.record, scene)["redundant_constraints"] is verdict
+
+
+def test_a_constraint_that_follows_for_all_values_and_is_not_listed_is_found():
+    scene = holonom.system(GUIDES.format(second="a*y - a*x", a=1))
+    assert scene.record.derivations[0].redundant == ("lambda2",)
+    derived = dataclasses.replace(scene.record.derivations[0], redundant=())
+    found = verdicts_of(dataclasses.replace(scene.record, derivations=(derived,)), scene)
+    assert found["redundant_constraints"] is Verdict.DISAGREES
