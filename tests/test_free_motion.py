@@ -233,7 +233,7 @@ def test_reasons_are_said_in_another_language():
         said = [translated(each) for each in (found.motion.evidence, found.universal.reason, found.trajectory.reason)]
     assert said == [
         "lambda1 的幂级数从 0 阶开始，取 30 位数字",
-        "没有控制律使每个运动都是自由的：(10) 中 y^3 的系数（来自 gravity）是 981",
+        "没有控制律使每个运动都是自由的：(10) 去分母后的一个倍式中 y^3 的系数（来自 gravity）是 981",
         "沿自由运动由约束解出控制",
     ]
 
