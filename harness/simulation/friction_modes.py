@@ -178,11 +178,13 @@ class FrictionModes:
         for side in (1, -1):
             mode = branch | dict(zip(self._zeros, side * np.sign(along / along[0])[:, 0].astype(int), strict=True))
             matrices, right = self._equations(mode, terms)
+            determinant = self._determinant(mode, terms)
+            matrices = np.where(determinant[:, None, None] != 0, matrices, np.eye(len(self._unknown)))
             amounts = np.append(np.linalg.solve(matrices, right[..., None])[..., 0].T, np.ones((1, len(right))), axis=0)
             drive, against = terms.drives[0] * amounts, terms.reactions * amounts
             leads = -side * drive.sum(axis=0) / np.abs(drive).max(axis=0)
             wrong = (-sides[:, None] * against.sum(axis=1) / np.abs(against).max(axis=1)).max(axis=0, initial=-1.0)
-            found += [self._determinant(mode, terms), np.maximum(leads, wrong)]
+            found += [determinant, np.maximum(leads, wrong)]
         return np.array(found)
 
     def _modes(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
@@ -213,8 +215,8 @@ class FrictionModes:
         if not found or self.rough:
             return None
         slopes = next(self._modes(inputs[:, None]))[1].drives[:, :-1, 0]
-        products = np.abs(slopes[:, :, None, None] * slopes)
-        if not _close(products, products.transpose(2, 1, 0, 3), products):
+        products = slopes[:, :, None, None] * slopes
+        if not _close(products, products.transpose(2, 1, 0, 3), np.abs(products)):
             return None
         best = min(found, key=lambda each: each.used)
         others = [name for name in self._zeros if best.pattern[name] != SLIDING]
