@@ -43,7 +43,7 @@ class Solution(NamedTuple):
     """A mode that agrees with its solution."""
 
     pattern: Pattern
-    drives: Vector  # of the zeros
+    drives: Vector  # of the zeros, then the amounts of the others
     amounts: Vector  # zero where they have no effect
     sizes: Vector  # of the largest terms of drives, then of the sizes of amounts
     used: float  # the largest share that a sliding amount has of its size
@@ -273,7 +273,9 @@ class FrictionModes:
             return None
         reach = np.concatenate([np.abs(each[:, :-1, 0]) for each in terms[:3]]).max(axis=0, initial=0.0)
         used = np.max(np.abs(amounts / limits), where=slide, initial=0.0)
-        return Solution(mode, drives, np.where(reach > 0, amounts, 0.0), np.concatenate([of_drives, of_limits]), used)
+        amounts, others = np.where(reach > 0, amounts, 0.0), [name not in self._zeros for name in self._unknown]
+        found = np.concatenate([drives, amounts[others]])
+        return Solution(mode, found, amounts, np.concatenate([of_drives, of_limits[others], of_limits]), used)
 
 
 def modes_that_may_agree(problem: MotionProblem, pattern: Pattern, precision: Precision) -> FrictionModes | None:

@@ -86,6 +86,11 @@ def test_a_sliding_rod_is_followed_up_to_the_paradoxes_of_painleve_and_not_into_
         of_text(ROD.replace("MU", str(mu)).replace("PHI", repr(last + 0.01))).simulate(until=1)
 
 
+def test_a_start_within_the_paradoxes_is_refused():
+    with failing(ErrorKind.NO_WAY_ON, "t = 0", "Painleve"):
+        of_text(ROD.replace("MU", "2").replace("PHI", "1")).simulate(until=0.001, samples=2)
+
+
 def test_a_rod_that_jams_names_the_paradox():
     """Steps became too short, with no word of the multiplier that grows without bound."""
     scene = of_text(ROD.replace("MU", "2").replace("PHI", "6/10").replace("dot(phi) = -1", "dot(phi) = 8"))
