@@ -280,7 +280,7 @@ class HybridMotion:
         """Return True if accelerations are hardly unique: multipliers grow."""
         if not self.problem.reacting:
             return False
-        modes, t, state = self._modes_at(self.mode.pattern, ()), np.array([self.time]), self.state[:, None]
+        modes, t, state = self._lasting_modes(self.mode.pattern), np.array([self.time]), self.state[:, None]
 
         def guards(times: Numbers, states: Numbers) -> Numbers:
             return modes.guards(self._inputs(times, states))

@@ -370,3 +370,16 @@ def test_feet_that_share_friction_have_unique_weights():
     assert motion["weight"] == pytest.approx(30)
     assert [each.t for each in motion.report.switchings] == pytest.approx([9, 9], rel=1e-9)
     assert motion["x1"][-1] == pytest.approx(1 / 6 / 2, rel=1e-9)
+
+
+def test_a_motion_that_ends_while_a_contact_sticks_names_its_end():
+    """It was an internal error. Truth: w = 1/(1 - t)."""
+    scene = of_text("""
+system : holonomic_system(coordinates = [x, y, w], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(w)^2)/2,
+  potential_energy = 10*y - w^4/2, forces = [-abs(lambda1)*signum(dot(x))/4, 0, 0], constraints = [y])$
+scene : holonomic_scene(system, initial_state = [x = 0, y = 0, w = 1, dot(x) = 0, dot(w) = 1])$
+""")
+    with failing(ErrorKind.NO_WAY_ON) as ended:
+        scene.simulate(until=2, samples=2)
+    assert float(ended.value.detail.split(",")[0]) == pytest.approx(1, abs=1e-6)
+    assert "Painleve" not in ended.value.detail
