@@ -42,8 +42,8 @@ def unknown_amounts(problem: MotionProblem, zeros: Collection[str]) -> tuple[str
     tuple of str
         Those, and the ones with multipliers in their sizes.
     """
-    sized = {sign.name for place, sign in enumerate(problem.signs, 1) if f"size[{place}]" in problem.switching.outputs}
-    return tuple(sign.name for sign in problem.signs if sign.name in sized or sign.name in zeros)
+    outputs = problem.switching.outputs
+    return tuple(name for name, place in problem.places.items() if name in zeros or f"size[{place}]" in outputs)
 
 
 def sticking(pattern: Pattern) -> list[str]:
@@ -97,7 +97,7 @@ def affine_terms(
         Outputs ``drive[j]`` of the zeros, ``size[j]``, ``reaction[k]`` and ``regular``, each where the amounts are
         zero, and ``d(output, sign)`` for each amount. None if a drive, size or reaction is not affine.
     """
-    wanted = {f"drive[{place}]" for place, sign in enumerate(problem.signs, 1) if sign.name in zeros}
+    wanted = {f"drive[{problem.places[name]}]" for name in zeros}
     wanted |= {name for name in problem.switching.outputs if name.startswith(("size[", "reaction[", "regular"))}
     given = {name: number for name, number in numbers_in(pattern).items() if name not in unknown}
     program = with_numbers(computing(problem.switching, wanted), given)
@@ -148,7 +148,7 @@ def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:
     unknown = unknown_amounts(problem, zeros)
     terms = affine_terms(problem, pattern, zeros, unknown)
     tape = Tape({*terms.inputs, *(name for name, _ in terms.assignments), *pattern})
-    equations = _Equations(terms, {sign.name: place for place, sign in enumerate(problem.signs, 1)}, unknown, tape)
+    equations = _Equations(terms, problem.places, unknown, tape)
     numbers = numbers_in(pattern)
     amounts = _solved([equations.row(name, numbers.get(name)) for name in unknown], tape)
     signs = [(name, equations.share(name, amounts)) for name in zeros]

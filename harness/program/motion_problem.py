@@ -268,6 +268,11 @@ class MotionProblem:
             drawing=drawing and replace(drawing, tables=problem.tables),
         )
 
+    @property
+    def places(self) -> dict[str, int]:
+        """Numbers of the signs by their names, as in the outputs of ``switching``."""
+        return {sign.name: place for place, sign in enumerate(self.signs, 1)}
+
     def once(self, what: Hashable, part: object, build: "Callable[[], Built]") -> "Built":
         """Return the result of `build` for a part, cached for all values of open inputs.
 

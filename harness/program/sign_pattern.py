@@ -8,7 +8,6 @@ switching surfaces are functions along the motion (`friction.py`).
 from collections.abc import Callable, Hashable
 from dataclasses import replace
 from fractions import Fraction
-from itertools import product
 from typing import Any, TypeVar
 
 from .drawing import Drawing
@@ -124,26 +123,7 @@ def driven(problem: MotionProblem, name: str) -> bool:
     -------
     bool
     """
-    return problem.switching is not None and f"drive[{_index(problem, name)}]" in problem.switching.outputs
-
-
-def signs_of_reactions(problem: MotionProblem, pattern: Pattern) -> list[Pattern]:
-    """Return the patterns with all signs of the multipliers that forces contain.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    pattern : Pattern
-        The sign of each function, 1, -1 or one that slides.
-
-    Returns
-    -------
-    list of Pattern
-        The pattern with 1 and -1 for each of these signs: 2^m patterns for m signs.
-    """
-    names = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
-    return [{**pattern, **dict(zip(names, signs, strict=True))} for signs in product((1, -1), repeat=len(names))]
+    return problem.switching is not None and f"drive[{problem.places[name]}]" in problem.switching.outputs
 
 
 def program_with_values(problem: MotionProblem, program: Program) -> Program:
@@ -292,7 +272,7 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
     Program
         Program with one output.
     """
-    return program_in(problem, computing(problem.switching, {f"{quantity}[{_index(problem, name)}]"}), pattern)
+    return program_in(problem, computing(problem.switching, {f"{quantity}[{problem.places[name]}]"}), pattern)
 
 
 def _with_programs(part: Part, changed: Callable[[Program], Program]) -> Part:
@@ -308,7 +288,3 @@ def _with_programs(part: Part, changed: Callable[[Program], Program]) -> Part:
                 return value
 
     return replace(part, **{name: new(value) for name, value in vars(part).items() if name != "switching"})
-
-
-def _index(problem: MotionProblem, name: str) -> int:
-    return 1 + [sign.name for sign in problem.signs].index(name)

@@ -112,7 +112,7 @@ class FrictionModes:
         precision: Precision,
         dependent: bool = False,
     ) -> None:
-        self._places = {sign.name: place for place, sign in enumerate(problem.signs, 1)}
+        self._places = problem.places
         self._zeros = [name for name in self._places if name in zeros]
         self.rough = [name for name in self._zeros if not slides(problem, name)]
         self._unknown = unknown_amounts(problem, set(zeros) - set(self.rough))
