@@ -573,8 +573,9 @@ class HybridMotion:
     def _mode_of(self, pattern: Pattern, problem: MotionProblem) -> Mode:
         key = problem.multipliers, frozenset(pattern.items())
         if key not in self._modes:
+            known, friction = self._known, self._lasting_modes(pattern)
             self._modes[key] = Mode(
-                problem, pattern, self._time_events, self._request, self._precision, self._end, self._known
+                problem, pattern, self._time_events, self._request, self._precision, self._end, known, friction
             )
         return self._modes[key]
 

@@ -29,7 +29,7 @@ from .energy import EnergyBalance
 from .engines.engine import Solutions, Step, Task
 from .engines.fallback import FallbackEngine
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
-from .friction_modes import modes_that_may_agree
+from .friction_modes import FrictionModes
 from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
@@ -59,6 +59,7 @@ class SwitchingFunctions(SignedFunctions):
         span: float,
         known: Collection[str] = (),
         rounding: Mapping[str, float] = NO_ROUNDING,
+        friction: FrictionModes | None = None,
     ) -> None:
         super().__init__(precision, span)
         self._inputs = Inputs(problem, precision)
@@ -69,15 +70,13 @@ class SwitchingFunctions(SignedFunctions):
                 self._rows += [(sign.name, to, inside) for to, inside in sides]
         self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
-        self._functions, self._modes = problem.once(
+        self._functions = problem.once(
             what,
             problem.switching,
-            lambda: (
-                [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
-                modes_that_may_agree(problem, pattern, precision),
-            ),
+            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
         )
-        self._rows += [(UNIQUE, 0, 1)] * (self._modes.count if self._modes else 0)
+        self._friction = friction
+        self._rows += [(UNIQUE, 0, 1)] * (friction.count if friction else 0)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the switching functions (see `SignedFunctions.values`)."""
@@ -85,7 +84,7 @@ class SwitchingFunctions(SignedFunctions):
         found = np.reshape([as_floats(function(inputs)[0]) for function in self._functions], (-1, len(times)))
         inside = np.array([side for *_, side in self._rows[: len(found)]], dtype=float)
         signed = inside[:, None] * found + self._rounding
-        return np.concatenate([signed, self._modes.guards(inputs)]) if self._modes else signed
+        return np.concatenate([signed, self._friction.guards(inputs)]) if self._friction else signed
 
 
 def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
@@ -108,6 +107,8 @@ class Mode:
         As for `HybridMotion`.
     known : dict
         The analytic motions of other modes, as `sharing_programs` keeps them.
+    friction : FrictionModes or None
+        As `modes_that_may_agree` returns them.
     """
 
     def __init__(
@@ -119,7 +120,9 @@ class Mode:
         precision: Precision,
         end: Any,
         known: dict[Hashable, MotionProblem],
+        friction: FrictionModes | None,
     ) -> None:
+        self._friction = friction
         self.whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
         analytic = problem_in(problem, pattern)
         if any(sign.by is DependsOn.TIME for sign in problem.signs):
@@ -159,7 +162,13 @@ class Mode:
         """The switching surfaces on which the pattern ends."""
         span = self._end - self._start
         return SwitchingFunctions(
-            self.whole, self.pattern, self._precision, span, self._time_events, self._reactions_of_rounding
+            self.whole,
+            self.pattern,
+            self._precision,
+            span,
+            self._time_events,
+            self._reactions_of_rounding,
+            self._friction,
         )
 
     @property
