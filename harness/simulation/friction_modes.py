@@ -165,10 +165,8 @@ class FrictionModes:
         """
         if self._dependent:
             return np.concatenate([self._guards_of_slipping(branch, terms) for branch, terms in self._branched(inputs)])
-        return np.array([self._determinant(mode, terms) for mode, terms in self._modes(inputs)])
-
-    def _determinant(self, mode: Pattern, terms: Terms) -> Vector:
-        return terms.regular * np.linalg.det(self._equations(mode, terms)[0])
+        modes = self._modes(inputs)
+        return np.array([terms.regular * np.linalg.det(self._equations(mode, terms)[0]) for mode, terms in modes])
 
     def _guards_of_slipping(self, branch: Pattern, terms: Terms) -> Numbers:
         """Return the guards of zeros that depend on each other, shape (4, k)."""
@@ -178,7 +176,7 @@ class FrictionModes:
         for side in (1, -1):
             mode = branch | dict(zip(self._zeros, side * np.sign(along / along[0])[:, 0].astype(int), strict=True))
             matrices, right = self._equations(mode, terms)
-            determinant = self._determinant(mode, terms)
+            determinant = terms.regular * np.linalg.det(matrices)
             matrices = np.where(determinant[:, None, None] != 0, matrices, np.eye(len(self._unknown)))
             amounts = np.append(np.linalg.solve(matrices, right[..., None])[..., 0].T, np.ones((1, len(right))), axis=0)
             drive, against = terms.drives[0] * amounts, terms.reactions * amounts
