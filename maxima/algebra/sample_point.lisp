@@ -164,7 +164,13 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
          (found (errset (catch 'irregular-point (newton-iteration (converted-point point #'float-of))))))
-    (if (car found) (converted-point (car found) #'rational))))
+    (if (car found) (point-with-unknowns-of (car found) point))))
+
+(defun point-with-unknowns-of (found point)
+  "The point with its unknowns as they are in another one, in floating point; all else stays exact."
+  (let ((moved (copied-point point)))
+    (dolist (q *unknowns* moved)
+      (setf (gethash q (sample-point-symbols moved)) (rational (coordinate q found))))))
 
 (defun refined-point (close)
   "To all digits: corrections in floating point add several each; Newton's method where they do not."
@@ -422,7 +428,7 @@ vanish; false where Newton's method does not get there."
          (best nil))
     (do* ((reach (or known (* share (size-in-metric guess rows))) (second best))
           (nearer (nearest-of-starts guess reach known rows) (nearest-of-starts guess reach reach rows)))
-         ((null nearer) (if best (converted-point (first best) #'rational)))
+         ((null nearer) (if best (point-with-unknowns-of (first best) point)))
       (setq best nearer))))
 
 (defun nearest-of-starts (guess reach known rows)
