@@ -164,7 +164,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """On several cores: the tests of a file stay together, and so do those of a fixture that is made once.
 
     Those that take longest come first, then files with many tests, so that no core waits for a last long one.
@@ -178,7 +178,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if MEASURED.intersection({item.nodeid, item.nodeid.partition("[")[0]}):
             item.add_marker(pytest.mark.long)
             item.add_marker(pytest.mark.measured)
-    items.sort(key=lambda item: (_rank(groups[item]), -sizes[groups[item]], groups[item]))
+    if hasattr(config, "workerinput"):
+        items.sort(key=lambda item: (_rank(groups[item]), -sizes[groups[item]], groups[item]))
 
 
 def _group(item: pytest.Item) -> str:

@@ -1,7 +1,7 @@
 """Measure which tests execute a function: those that can kill its mutants.
 
 The tests run in a copy of the sources in which each function begins with a mark, which writes down the test that runs.
-What Maxima executed it prints when it ends.
+What Maxima executed it prints when it ends. A test that fails there is named: it may execute more than was marked.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import json
 import re
 from collections import ChainMap, Counter, defaultdict
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 from copies import Copy, in_copies
@@ -21,6 +22,7 @@ APART = {"companion", "faults", "figures", "mutants", "reference", "typeset"}  #
 APART |= {"test_lisps.py", "test_preloaded.py"}  # and of Maxima without the image, in which functions are defined anew
 QUICK = 0.05  # seconds of a test whose time pytest does not list
 SECONDS = 120.0  # of the tests that are run for a mutant, as measured
+SHARES = (1, 3, 6)  # tests in a row of a file, by its nearness to the function
 MARKS = "marks.txt"  # what the marks write in a copy
 LONGEST = 600  # seconds of processor time of a file's tests
 
@@ -49,7 +51,7 @@ def run_process(command, place, printed):
 """
 MARKS_OF_LISP = """
 (defvar *marked* (make-array {count} :initial-element nil))
-(defun mark (number) (setf (aref *marked* number) t))
+(defun holonom_mark (number) (setf (aref *marked* number) t))
 (defun print-marks () (format t "~%MARKS~{{ ~D~}}~%" (loop for i below {count} if (aref *marked* i) collect i)))
 """
 INSERTED = {
@@ -62,10 +64,10 @@ INSERTED = {
 def marked_body(function: Function, number: int) -> str:
     """Return the body of a function with a mark at its start."""
     if function.language == "mac":
-        return f"(?mark({number}), {function.body})"
+        return f"(?holonom_mark({number}), {function.body})"
     if function.language == "lisp":
         declared = re.match(r"\s*(\(declare .*\)\s*\n)?", function.body).end()
-        return f"{function.body[:declared]}(mark {number}) {function.body[declared:]}"
+        return f"{function.body[:declared]}(holonom_mark {number}) {function.body[declared:]}"
     indent = re.match(r"\s*", function.body)[0]
     return f"{indent}__import__('marks').mark({number})\n{function.body}"
 
@@ -101,6 +103,7 @@ def _executed_by(copy: Copy, file: Path) -> dict[str, dict]:
     marks.write_text("", encoding="utf-8")
     name = file.relative_to(ROOT).as_posix()
     _, printed = copy.run(LONGEST, "--durations=0", name)
+    print(*re.findall(r"^(?:FAILED|ERROR) .*", printed, re.MULTILINE), sep="\n", end="")
     ran, times = defaultdict(set), Counter()
     for line in marks.read_text(encoding="utf-8").splitlines():
         number, _, test = line.partition(" ")
@@ -149,6 +152,29 @@ def _digest(file: Path) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
+def nearness(file: str, function: Function) -> int:
+    """Return 2 if a test file is named after the file of a function, 1 if it names the function, 0 otherwise.
+
+    Parameters
+    ----------
+    file : str
+        Path of the test file.
+    function : Function
+        A function.
+
+    Returns
+    -------
+    int
+    """
+    subject, name = Path(file).stem.partition("_")[2], function.name.rpartition(".")[2].lstrip("$")
+    return 2 if subject == Path(function.path).stem.strip("_") else int(name in _words_of(file))
+
+
+@cache
+def _words_of(file: str) -> frozenset[str]:
+    return frozenset(re.findall(r"[\w%?-]+", read(file)))
+
+
 class Executed:
     """The tests that execute each function.
 
@@ -168,7 +194,10 @@ class Executed:
                 self._of[function].add(test)
 
     def by(self, function: Function) -> list[str]:
-        """Return tests that execute a function: of each file the one that executes the fewest functions, then the next.
+        """Return tests that execute a function, those of the nearest files first.
+
+        A file named after that of the function is nearest, then one that names the function, whatever it is about. Of
+        each file come the tests that execute the fewest functions: nearest files have `SHARES` of tests in a row.
 
         Parameters
         ----------
@@ -178,21 +207,22 @@ class Executed:
         Returns
         -------
         list of str
-            Tests that take `SECONDS` together, one at least if there is any.
+            Tests that take `SECONDS` together, one at least if there is any. Those of a file are together.
         """
         breadth = {test: len(self._tests[test]["functions"]) for test in self._executing(function)}
         ranked, before = [], Counter()
         for test in sorted(breadth, key=lambda each: (breadth[each], each)):
             file = test.partition("::")[0]
-            ranked.append((before[file], breadth[test], test))
+            near = nearness(file, function)
+            ranked.append((before[file] // SHARES[near], -near, breadth[test], test))
             before[file] += 1
-        chosen, left = [], SECONDS
+        chosen, left = defaultdict(list), SECONDS
         for *_, test in sorted(ranked):
             left -= self._tests[test]["seconds"] or QUICK
             if left < 0 and chosen:
                 break
-            chosen.append(test)
-        return chosen
+            chosen[test.partition("::")[0]].append(test)
+        return [test for file, tests in chosen.items() for test in ([file] if file in tests else tests)]
 
     def while_loading(self, function: Function) -> bool:
         """Return True if a function of Maxima runs while the library is loaded.

@@ -2,7 +2,8 @@
 
 A seed draws functions of the sources, in each a kind of change, and a change of that kind. The nearest tests of each
 mutant run in a copy of the sources. It is killed when one of them fails or takes too long; at the end these tests have
-to pass without a mutant. A run that was interrupted continues from its JSON file; survivors meet changed tests again.
+to pass without a mutant. Mutants that are listed as equivalent are not run. A run that was interrupted continues from
+its JSON file; survivors meet changed tests again.
 
     python tests/mutants/run.py build/mutants.json [--seed SEED] [--count COUNT] [--jobs JOBS]
 """
@@ -27,7 +28,7 @@ from itertools import islice
 from pathlib import Path
 
 from changes import changes
-from copies import Copy, in_copies
+from copies import LONGEST, Copy, in_copies
 from executed import Executed, measure
 from scipy.stats import binomtest
 from sources import Function, functions, read
@@ -144,20 +145,23 @@ def files_of(tests: Iterable[str]) -> list[str]:
 def require_passing(tests: Iterable[str]) -> None:
     """End if one of these tests fails without a mutant."""
     with tempfile.TemporaryDirectory(prefix="holonom-mutants-") as directory:
-        copy = Copy(Path(directory, "copy"))
-        for test in sorted(tests):
-            if failing(copy, test):
-                raise SystemExit(f"This test fails without a mutant: {test}")
+        status, printed = Copy(Path(directory, "copy")).run(LONGEST, "-rfE", *sorted(tests))
+        if tests and status:
+            raise SystemExit(f"These tests fail without a mutant:\n{printed}")
+
+
+def reasons() -> dict[str, str]:
+    """Return the reason of each mutant that is listed as equivalent."""
+    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    return {f"{each['function']}: {each['change']}": each["reason"] for each in listed.get("mutant", [])}
 
 
 def report(outcomes: dict[Mutant, str]) -> None:
     """Print the survivors, and the score with its Wilson interval of 95 %."""
-    listed = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
-    reasons = {f"{each['function']}: {each['change']}": each["reason"] for each in listed.get("mutant", [])}
-    alive = [str(mutant) for mutant, killer in outcomes.items() if not killer]
+    listed, alive = reasons(), [str(mutant) for mutant, killer in outcomes.items() if not killer]
     for mutant in alive:
-        print(f"equivalent {mutant}: {reasons[mutant]}" if mutant in reasons else f"SURVIVES {mutant}")
-    killed, equivalent = len(outcomes) - len(alive), sum(mutant in reasons for mutant in alive)
+        print(f"equivalent {mutant}: {listed[mutant]}" if mutant in listed else f"SURVIVES {mutant}")
+    killed, equivalent = len(outcomes) - len(alive), sum(mutant in listed for mutant in alive)
     if wrong := len(outcomes) - equivalent:
         low, high = binomtest(killed, wrong).proportion_ci(method="wilson")
         print(f"{killed} of {wrong} mutants killed, {killed / wrong:.1%}, 95 % interval {low:.1%} to {high:.1%}; "
@@ -181,10 +185,10 @@ def main() -> None:
     executed = measure(given.results.parent / "executed", given.jobs)
     chosen = {mutant: executed.by(mutant.function) for mutant in islice(draw(seed), given.count)}
     digests = {mutant: (mutant.digest(), mutant.digest(files_of(tests))) for mutant, tests in chosen.items()}
-    outcomes = {}
+    outcomes, listed = {}, reasons()
     for mutant, (own, with_tests) in digests.items():
         found, met = known.get(own, ("", ""))
-        if found or met == with_tests:
+        if found or met == with_tests or str(mutant) in listed:
             outcomes[mutant] = found
     left = [mutant for mutant in chosen if mutant not in outcomes]
 
