@@ -13,7 +13,8 @@ Switching surfaces that depend on each other have no unique amounts. If all zero
 contacts stick unless all of them slip to the same side with accelerations to it.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 from itertools import product
 from typing import NamedTuple
 
@@ -31,7 +32,7 @@ from ..program.friction import (
 )
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.precision import Precision
-from .evaluation import Numbers, as_floats, evaluation
+from .evaluation import Numbers, as_floats, evaluation, zeros
 from .matrices import Vector
 from .zeros import ZERO
 
@@ -112,7 +113,7 @@ class FrictionModes:
         precision: Precision,
         dependent: bool = False,
     ) -> None:
-        self._places = problem.places
+        self._places, self._pattern, self._precision = problem.places, pattern, precision
         self._zeros = [name for name in self._places if name in zeros]
         self.rough = [name for name in self._zeros if not slides(problem, name)]
         self._unknown = unknown_amounts(problem, set(zeros) - set(self.rough))
@@ -120,11 +121,14 @@ class FrictionModes:
         self._signs = [dict(zip(free, each, strict=True)) for each in product((1, -1, SLIDING), repeat=len(free))]
         self._dependent = dependent
         self._reactions = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
-        self._branches = []  # patterns of the signs of multipliers, with their terms as functions
-        for signs in product((1, -1), repeat=len(self.rough) + len(self._reactions)):
-            branch = {**pattern, **dict(zip([*self.rough, *self._reactions], signs, strict=True))}
-            terms = affine_terms(problem, branch, self._zeros, self._unknown)
-            self._branches.append((branch, list(terms.outputs), evaluation(terms, precision)))
+        tried = [*self.rough, *self._reactions]
+        self._branches = [dict(zip(tried, each, strict=True)) for each in product((1, -1), repeat=len(tried))]
+        self._sides = {name: np.array([float(branch[name]) for branch in self._branches]) for name in tried}
+        known = {name: sign for name, sign in pattern.items() if name not in tried}
+        terms = affine_terms(problem, known, self._zeros, self._unknown)
+        self._outputs = list(terms.outputs)
+        inputs = *(name for name in terms.inputs if name not in tried), *tried
+        self._function = evaluation(replace(terms, inputs=inputs), precision)
 
     @property
     def count(self) -> int:
@@ -145,7 +149,13 @@ class FrictionModes:
             Modes with most sliding signs first. Those without a unique solution are left out: where the amounts are
             not unique, the ends of their ranges agree in other modes.
         """
-        found = (self._solution(pattern, terms) for pattern, terms in self._modes(inputs[:, None]))
+        terms = self._terms(inputs[:, None])
+        equations = [(signs, *self._equations(signs, terms)) for signs in self._signs]
+        found = [
+            self._solution(branch | signs, matrices[place], right[place], [each[..., place] for each in terms[:3]])
+            for place, branch in enumerate(self._branches)
+            for signs, matrices, right in equations
+        ]
         agreeing = [solution for solution in found if solution is not None]
         return sorted(agreeing, key=lambda solution: -list(solution.pattern.values()).count(SLIDING))
 
@@ -163,36 +173,30 @@ class FrictionModes:
             The determinant of each mode. If the zeros depend on each other, those of slipping to both sides, and how
             far these modes are from agreeing.
         """
+        terms = self._terms(inputs)
         if self._dependent:
-            return np.concatenate([self._guards_of_slipping(branch, terms) for branch, terms in self._branched(inputs)])
-        modes = self._modes(inputs)
-        return np.array([terms.regular * np.linalg.det(self._equations(mode, terms)[0]) for mode, terms in modes])
+            found = self._guards_of_slipping(terms)
+        else:
+            found = [terms.regular * np.linalg.det(self._equations(signs, terms)[0]) for signs in self._signs]
+        return np.reshape(found, (self.count, -1))
 
-    def _guards_of_slipping(self, branch: Pattern, terms: Terms) -> Numbers:
-        """Return the guards of zeros that depend on each other, shape (4, k)."""
-        along = terms.drives[:, self._unknown.index(self._zeros[0])]
-        sides = np.array([branch[name] for name in self._reactions])
+    def _guards_of_slipping(self, terms: Terms) -> list[Vector]:
+        """Return the guards of zeros that depend on each other."""
+        along = terms.drives[:, self._unknown.index(self._zeros[0]), 0]
+        points = terms.drives.shape[-1] // len(self._branches)
+        sides = np.reshape([np.repeat(self._sides[name], points) for name in self._reactions], (-1, len(terms.regular)))
         found = []
         for side in (1, -1):
-            mode = branch | dict(zip(self._zeros, side * np.sign(along / along[0])[:, 0].astype(int), strict=True))
-            matrices, right = self._equations(mode, terms)
+            slipping = dict(zip(self._zeros, side * np.sign(along / along[0]).astype(int), strict=True))
+            matrices, right = self._equations(slipping, terms)
             determinant = terms.regular * np.linalg.det(matrices)
             matrices = np.where(determinant[:, None, None] != 0, matrices, np.eye(len(self._unknown)))
             amounts = np.append(np.linalg.solve(matrices, right[..., None])[..., 0].T, np.ones((1, len(right))), axis=0)
             drive, against = terms.drives[0] * amounts, terms.reactions * amounts
             leads = -side * drive.sum(axis=0) / np.abs(drive).max(axis=0)
-            wrong = (-sides[:, None] * against.sum(axis=1) / np.abs(against).max(axis=1)).max(axis=0, initial=-1.0)
+            wrong = (-sides * against.sum(axis=1) / np.abs(against).max(axis=1)).max(axis=0, initial=-1.0)
             found += [determinant, np.maximum(leads, wrong)]
-        return np.array(found)
-
-    def _modes(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
-        for branch, terms in self._branched(inputs):
-            for signs in self._signs:
-                yield {name: (branch | signs)[name] for name in self._places}, terms
-
-    def _branched(self, inputs: Numbers) -> Iterator[tuple[Pattern, Terms]]:
-        for branch, outputs, function in self._branches:
-            yield branch, self._terms(dict(zip(outputs, as_floats(function(inputs)), strict=True)), inputs.shape[1])
+        return found
 
     def shared(self, solutions: Sequence[Solution], inputs: Numbers) -> Pattern | None:
         """Return a pattern in which contacts stick together.
@@ -212,7 +216,7 @@ class FrictionModes:
         found = [each for each in solutions if SLIDING in each.pattern.values()]
         if not found or self.rough:
             return None
-        slopes = next(self._modes(inputs[:, None]))[1].drives[:, :-1, 0]
+        slopes = self._terms(inputs[:, None]).drives[:, :-1, 0]
         products = slopes[:, :, None, None] * slopes
         if not _close(products, products.transpose(2, 1, 0, 3), np.abs(products)):
             return None
@@ -220,7 +224,17 @@ class FrictionModes:
         others = [name for name in self._zeros if best.pattern[name] != SLIDING]
         return best.pattern | {name: f"stuck {best.pattern[name]}" for name in others}
 
-    def _terms(self, values: Mapping[str, Vector], k: int) -> Terms:
+    def _terms(self, inputs: Numbers) -> Terms:
+        """Return the terms at k states in each branch, one branch after the other."""
+        rows, k = inputs.shape
+        given = zeros(self._precision, rows + len(self._sides), len(self._branches), k)
+        given[:rows] = inputs[:, None]
+        for row, sides in zip(given[rows:], self._sides.values(), strict=True):
+            row[...] = sides[:, None]
+        given = given.reshape(len(given), -1)
+        values = dict(zip(self._outputs, as_floats(self._function(given)), strict=True))
+        k = given.shape[1]
+
         def affine(quantity: str, names: Sequence[str], constant: float) -> Numbers:
             outputs = [f"{quantity}[{self._places[name]}]" for name in names]
             slopes = [[values.get(derivative_name(each, y), np.zeros(k)) for y in self._unknown] for each in outputs]
@@ -234,30 +248,35 @@ class FrictionModes:
             values.get("regular", np.ones(k)),
         )
 
-    def _equations(self, mode: Pattern, terms: Terms) -> tuple[Numbers, Numbers]:
+    def _equations(self, signs: Pattern, terms: Terms) -> tuple[Numbers, Numbers]:
         """Return the equations of the amounts.
 
         Coefficients have shape (k, amounts, amounts), right sides (k, amounts).
         """
         rows = []
         for place, name in enumerate(self._unknown):
-            if mode[name] == SLIDING:
+            if signs.get(name) == SLIDING:
                 drive = terms.drives[self._zeros.index(name)]
                 rows.append([*-drive[:-1], drive[-1]])
             else:
-                size = mode[name] * terms.sizes[place]
+                size = self._sign(name, signs, terms) * terms.sizes[place]
                 own = np.arange(len(self._unknown))[:, None] == place
                 rows.append([*(own - size[:-1]), size[-1]])
         equations = np.moveaxis(np.array(rows).reshape(len(rows), len(rows) + 1, -1), -1, 0)
         return equations[:, :, :-1], equations[:, :, -1]
 
-    def _solution(self, mode: Pattern, terms: Terms) -> Solution | None:
-        matrices, right = self._equations(mode, terms)
-        if not _is_regular(matrices[0]):
+    def _sign(self, name: str, signs: Pattern, terms: Terms) -> int | Vector:
+        if name in self._sides:
+            return np.repeat(self._sides[name], len(terms.regular) // len(self._branches))
+        return signs.get(name, self._pattern.get(name))
+
+    def _solution(self, chosen: Pattern, matrix: Numbers, right: Vector, terms: Sequence[Numbers]) -> Solution | None:
+        if not _is_regular(matrix):
             return None
-        amounts = np.linalg.solve(matrices[0], right[0])
+        amounts = np.linalg.solve(matrix, right)
+        mode = {name: (self._pattern | chosen)[name] for name in self._places}
         (drives, of_drives), (limits, of_limits), (reactions, of_reactions) = (
-            _values_and_sizes(each[..., 0], amounts) for each in terms[:3]
+            _values_and_sizes(each, amounts) for each in terms
         )
         slide = np.array([mode[name] == SLIDING for name in self._unknown], dtype=bool)
         signs = np.array([0 if mode[name] == SLIDING else mode[name] for name in self._zeros])
@@ -269,7 +288,7 @@ class FrictionModes:
             or (sides * reactions < -ZERO * of_reactions).any()
         ):
             return None
-        reach = np.concatenate([np.abs(each[:, :-1, 0]) for each in terms[:3]]).max(axis=0, initial=0.0)
+        reach = np.concatenate([np.abs(each[:, :-1]) for each in terms]).max(axis=0, initial=0.0)
         used = np.max(np.abs(amounts / limits), where=slide, initial=0.0)
         amounts, others = np.where(reach > 0, amounts, 0.0), [name not in self._zeros for name in self._unknown]
         found = np.concatenate([drives, amounts[others]])
