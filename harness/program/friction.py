@@ -17,7 +17,7 @@ from fractions import Fraction
 
 from .differentiation import derivative_name, differentiated
 from .motion_problem import MotionProblem
-from .motion_program import Atom, Call, Name, Operation, Program, names_used
+from .motion_program import Atom, Name, Operation, Program, names_used
 from .rewriting import ONE, ZERO, computing, with_numbers
 from .tape import Tape
 
@@ -155,32 +155,6 @@ def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:
     outputs = {name: Name(name) for name in zeros}
     whole = replace(terms, assignments=(*terms.assignments, *tape.assignments, *signs), outputs=outputs)
     return computing(whole, outputs)
-
-
-def room_to_slide(problem: MotionProblem, pattern: Pattern, name: str, side: int) -> Program:
-    """Return the program of the distance of a sliding sign to a limit.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        A motion with signs.
-    pattern : Pattern
-        The sign of each function.
-    name : str
-        A sign that slides.
-    side : int
-        The limit, 1 or -1.
-
-    Returns
-    -------
-    Program
-        One output, 1 - side s_j.
-    """
-    signs = sliding_signs(problem, pattern)
-    left = Call(Operation.SUBTRACT, (ONE, Call(Operation.MULTIPLY, (Fraction(side), Name(name)))))
-    room = f"{name}_room"
-    whole = replace(signs, assignments=(*signs.assignments, (room, left)), outputs={room: Name(room)})
-    return computing(whole, whole.outputs)
 
 
 class _Equations:

@@ -5,7 +5,7 @@ they stay the same, the motion is analytic, and its problem has the signs put in
 switching surfaces are functions along the motion (`friction.py`).
 """
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any, TypeVar
@@ -273,6 +273,30 @@ def switching_function(problem: MotionProblem, quantity: str, name: str, pattern
         Program with one output.
     """
     return program_in(problem, computing(problem.switching, {f"{quantity}[{problem.places[name]}]"}), pattern)
+
+
+def switching_functions(problem: MotionProblem, pattern: Pattern, names: Sequence[str]) -> Program:
+    """Return the functions with which signs of a pattern end.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    pattern : Pattern
+        As for `problem_in`.
+    names : sequence of str
+        Some of the signs.
+
+    Returns
+    -------
+    Program
+        An output by the name of each sign: its function, or the sign itself if it slides.
+    """
+    functions = problem.switching.outputs
+    outputs = {
+        name: Name(name) if pattern[name] == SLIDING else functions[f"switch[{problem.places[name]}]"] for name in names
+    }
+    return program_in(problem, computing(replace(problem.switching, outputs=outputs), names), pattern)
 
 
 def _with_programs(part: Part, changed: Callable[[Program], Program]) -> Part:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.friction import SLIDING, STUCK, Pattern, room_to_slide
+from ..program.friction import SLIDING, STUCK, Pattern
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import Precision
@@ -19,7 +19,7 @@ from ..program.sign_pattern import (
     program_in,
     program_with_values,
     sharing_programs,
-    switching_function,
+    switching_functions,
 )
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import settle
@@ -66,32 +66,27 @@ class SwitchingFunctions(SignedFunctions):
         for sign in problem.signs:
             value = pattern[sign.name]
             if sign.name not in known and value not in STUCK:
-                sides = [(1, 1), (-1, 1)] if value == SLIDING else [(-value, value)]
-                self._rows += [(sign.name, to, inside) for to, inside in sides]
+                self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == SLIDING else (-value,))]
+        names = list(dict.fromkeys(name for name, *_ in self._rows))
+        self._of_rows = [names.index(name) for name, *_ in self._rows]
+        self._constants = precision.numbers([pattern[name] == SLIDING for name, *_ in self._rows])[:, None]
+        self._slopes = precision.numbers([-to for _, to, _ in self._rows])[:, None]
         self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
-        self._functions = problem.once(
-            what,
-            problem.switching,
-            lambda: [evaluation(_inside(problem, pattern, name, to), precision) for name, to, _ in self._rows],
-        )
+
+        def compiled() -> Evaluation | None:
+            return evaluation(switching_functions(problem, pattern, names), precision) if names else None
+
+        self._function = problem.once(what, problem.switching, compiled)
         self._friction = friction
         self._rows += [(UNIQUE, 0, 1)] * (friction.count if friction else 0)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the switching functions (see `SignedFunctions.values`)."""
         inputs = self._inputs(times, states)
-        found = np.reshape([as_floats(function(inputs)[0]) for function in self._functions], (-1, len(times)))
-        inside = np.array([side for *_, side in self._rows[: len(found)]], dtype=float)
-        signed = inside[:, None] * found + self._rounding
+        found = self._constants + self._slopes * self._function(inputs)[self._of_rows]
+        signed = as_floats(found) + self._rounding
         return np.concatenate([signed, self._friction.guards(inputs)]) if self._friction else signed
-
-
-def _inside(problem: MotionProblem, pattern: Pattern, name: str, to: int) -> Program:
-    """Return the function whose sign is the side of a switching surface."""
-    if pattern[name] == SLIDING:
-        return room_to_slide(problem, pattern, name, to)
-    return switching_function(problem, "switch", name, pattern)
 
 
 class Mode:
