@@ -208,9 +208,11 @@ class SignedFunctions(ABC):
 
     def _first_in(self, step: Step, places: Numbers, values: Numbers, begun: Sequence[int]) -> Crossing | None:
         """Return the first crossing among the samples of each function with a sign."""
-        for (name, *_), row in zip(self._rows, values, strict=True):
-            self._sizes[name] = max(self._sizes.get(name, 0.0), np.max(np.abs(row)))
-        found = [self._in_row(step, row, places, values[row], first) for row, first in enumerate(begun)]
+        for (name, *_), size in zip(self._rows, np.abs(values).max(axis=1), strict=True):
+            self._sizes[name] = max(self._sizes.get(name, 0.0), size)
+        clear = values.min(axis=1) > np.ptp(values, axis=1)
+        rows = [row for row, is_clear in enumerate(clear) if not is_clear]
+        found = [self._in_row(step, row, places, values[row], begun[row]) for row in rows]
         return min((crossing for crossing in found if crossing), key=lambda crossing: crossing.t, default=None)
 
     def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers, first: int) -> Crossing | None:
