@@ -109,30 +109,8 @@ def examined(case: Case, extent: Extent) -> CaseReport:
     return CaseReport(case, tuple(each for each in found if isinstance(each, Result)), sweep)
 
 
-def holonom_result(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method of Holonom's, with its required number of correct digits.
-
-    Parameters
-    ----------
-    method : str
-        Name of the method.
-    quantity : str
-        Name of the quantity.
-    digits : float
-        Correct decimal digits, from 0 to 16.
-    needed : float
-        Required number of correct digits.
-
-    Returns
-    -------
-    Result
-        `Outcome.HOLDS` or `Outcome.FAILS`.
-    """
-    return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.FAILS)
-
-
-def reference_result(method: str, quantity: str, digits: float, needed: float) -> Result:
-    """Return a method for comparison, which may have fewer.
+def graded(method: str, quantity: str, digits: float, needed: float, compared: bool = False) -> Result:
+    """Return the result of a method with its number of correct digits.
 
     Parameters
     ----------
@@ -144,13 +122,15 @@ def reference_result(method: str, quantity: str, digits: float, needed: float) -
         Correct decimal digits, from 0 to 16.
     needed : float
         Number of correct digits required of a method of Holonom.
+    compared : bool
+        True if the method is there for comparison, and may have fewer.
 
     Returns
     -------
     Result
-        `Outcome.HOLDS` or `Outcome.LOSES`.
     """
-    return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else Outcome.LOSES)
+    missed = Outcome.LOSES if compared else Outcome.FAILS
+    return Result(method, quantity, digits, Outcome.HOLDS if digits >= needed else missed)
 
 
 def required(method: str, quantity: str, holds: bool) -> Result:

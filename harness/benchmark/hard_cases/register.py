@@ -24,8 +24,7 @@ from .case import (
     correct_digits,
     digits_of_error,
     examined,
-    holonom_result,
-    reference_result,
+    graded,
     required,
 )
 from .runs import BASELINE, baseline_motion, place_digits, problem, simulated
@@ -63,7 +62,7 @@ def _redundant(file: str, needed: float, truth: dict) -> Findings:
         (translatable("constraint forces"), motion.constraint_forces),
         (translatable("multipliers"), motion.multipliers),
     ):
-        yield holonom_result(motion.engine, quantity, correct_digits(computed, truth[quantity]), needed)
+        yield graded(motion.engine, quantity, correct_digits(computed, truth[quantity]), needed)
     yield required(motion.engine, translatable("redundancy reported"), Difficulty.REDUNDANT in motion.cases)
 
 
@@ -87,7 +86,7 @@ def _dead_centres(extent: Extent) -> Findings:
     place = translatable("place after %(turns)s revolutions", turns=turns)
     yield from place_digits(place, baseline, motion, truth[extent]["coordinates"], needed, scale=1)
     energy = digits_of_error(motion.energy_error, truth["energy"])
-    yield holonom_result(motion.engine, translatable("energy"), energy, needed)
+    yield graded(motion.engine, translatable("energy"), energy, needed)
     singular = Difficulty.SINGULAR_CONFIGURATION in motion.cases
     yield required(motion.engine, translatable("singular configuration reported"), singular)
 
@@ -100,7 +99,7 @@ def _stiff_spring(extent: Extent) -> Findings:
     coordinates = translatable("coordinates at t = %(t)s", t=until)
     yield from place_digits(coordinates, baseline, motion, truth[extent]["coordinates"], needed)
     energy = digits_of_error(motion.energy_error, truth["energy"])
-    yield holonom_result(motion.engine, translatable("energy"), energy, needed)
+    yield graded(motion.engine, translatable("energy"), energy, needed)
 
 
 def _car_axis(extent: Extent) -> Findings:
@@ -127,7 +126,7 @@ def _overflowing_control(extent: Extent) -> Findings:
         coordinates = translatable("coordinates at t = %(t)s", t=until)
         yield from place_digits(coordinates, baseline, motion, at["coordinates"], needed)
         zero = digits_of_error(abs(motion.multipliers[0]) * at["gradient"], truth["initial_force"])
-        yield holonom_result(motion.engine, translatable("zero multiplier at t = %(t)s", t=until), zero, needed)
+        yield graded(motion.engine, translatable("zero multiplier at t = %(t)s", t=until), zero, needed)
 
 
 def _free_motion(extent: Extent) -> Findings:
@@ -144,7 +143,7 @@ def _free_motion(extent: Extent) -> Findings:
     first, last = truth[0], truth[-1]
     motion = simulated(problem(*PAPER), last["t"])
     zero = digits_of_error(abs(motion.multipliers[0]) * last["gradient"], first["force"])
-    yield holonom_result(motion.engine, translatable("zero multiplier at t = %(t)s", t=last["t"]), zero, needed)
+    yield graded(motion.engine, translatable("zero multiplier at t = %(t)s", t=last["t"]), zero, needed)
 
 
 def _mass_ratio(extent: Extent) -> Findings:
@@ -157,7 +156,7 @@ def _mass_ratio(extent: Extent) -> Findings:
     yield from solve_digits(translatable("accelerations"), digits, needed=12.0)
     motion = simulated(problem(file), truth["until"])
     places = correct_digits(motion.coordinates, truth["coordinates"])
-    yield holonom_result(motion.engine, translatable("places at t = %(t)s", t=truth["until"]), places, needed=10.0)
+    yield graded(motion.engine, translatable("places at t = %(t)s", t=truth["until"]), places, needed=10.0)
 
 
 BASELINE_PERIODS = {Extent.SHORT: "50", Extent.FULL: "1000"}  # the baseline takes 20 ms for one
@@ -172,18 +171,18 @@ def _long_run(extent: Extent) -> Findings:
     state = baseline_motion(swinging, at["until"])
     place = translatable("place after %(periods)s periods", periods=BASELINE_PERIODS[extent])
     constraint = translatable("constraint")
-    yield reference_result(BASELINE, place, correct_digits(state[:2], at["coordinates"]), needed)
+    yield graded(BASELINE, place, correct_digits(state[:2], at["coordinates"]), needed, compared=True)
     residual = digits_of_error(abs(state[0] ** 2 + state[1] ** 2 - 1), 1)
-    yield reference_result(BASELINE, constraint, residual, needed_of_residual)
+    yield graded(BASELINE, constraint, residual, needed_of_residual, compared=True)
     at = truth[PERIODS]
     motion = simulated(swinging, at["until"])
     place = translatable("place after %(periods)s periods", periods=PERIODS)
-    yield holonom_result(motion.engine, place, correct_digits(motion.coordinates, at["coordinates"]), needed)
+    yield graded(motion.engine, place, correct_digits(motion.coordinates, at["coordinates"]), needed)
     for quantity, digits in (
         (constraint, digits_of_error(motion.residual, 1)),
         (translatable("energy"), digits_of_error(motion.energy_error, truth["energy"])),
     ):
-        yield holonom_result(motion.engine, quantity, digits, needed_of_residual)
+        yield graded(motion.engine, quantity, digits, needed_of_residual)
 
 
 def _vanishing_length(extent: Extent) -> Findings:
@@ -193,7 +192,7 @@ def _vanishing_length(extent: Extent) -> Findings:
         refused = _refusal(scene)
         facts = refused.facts if refused else {}
         digits = correct_digits([facts.get("time", nan)], [truth["time"]])
-        yield holonom_result(engine, translatable("time of the stop, %(scene)s", scene=scene), digits, needed)
+        yield graded(engine, translatable("time of the stop, %(scene)s", scene=scene), digits, needed)
         yield required(engine, translatable("constraint named"), facts.get("multiplier") == "lambda1")
         given = refused is not None and refused.kind is ErrorKind.NO_GRADIENT
         yield required(engine, translatable("reason given"), given)

@@ -20,7 +20,7 @@ from ...simulation.hard_cases import Difficulty
 from ...simulation.matrices import Matrix, MotionMatrices, Vector
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
-from .case import Result, correct_digits, holonom_result, reference_result
+from .case import Result, correct_digits, graded
 
 EXAMPLES = shared("examples")
 TOLERANCE = 1e-12  # of the baseline
@@ -129,8 +129,8 @@ def place_digits(
         One method's digits.
     """
     first = slice(len(truth))
-    yield reference_result(BASELINE, quantity, correct_digits(baseline[first], truth, scale), needed)
-    yield holonom_result(motion.engine, quantity, correct_digits(motion.coordinates[first], truth, scale), needed)
+    yield graded(BASELINE, quantity, correct_digits(baseline[first], truth, scale), needed, compared=True)
+    yield graded(motion.engine, quantity, correct_digits(motion.coordinates[first], truth, scale), needed)
 
 
 class Stuck(ArithmeticError):
@@ -159,7 +159,7 @@ def baseline_motion(motion: MotionProblem, until: float) -> Vector:
     def rate(t: float, state: Vector) -> Vector:
         if next(left, None) is None:
             raise Stuck
-        return np.concatenate([state[n:], bordered_accelerations(*matrices(t, state)[:4])])
+        return np.concatenate([state[n:], _bordered_accelerations(*matrices(t, state)[:4])])
 
     start = np.array([float(motion.start[name]) for name in motion.state])
     span = (float(motion.start["t"]), until)
@@ -171,24 +171,8 @@ def baseline_motion(motion: MotionProblem, until: float) -> Vector:
     return found.y[:, -1] if found.success else np.full(2 * n, np.nan)
 
 
-def bordered_accelerations(A: Matrix, h: Vector, J: Matrix, c: Vector) -> Vector:
-    """Return the accelerations from A a - J^T lambda = h and J a = -c.
-
-    Parameters
-    ----------
-    A : Matrix, shape (n, n)
-        Mass matrix.
-    h : Vector, shape (n,)
-        Forces.
-    J : Matrix, shape (g, n)
-        Jacobian of the constraints.
-    c : Vector, shape (g,)
-        Terms of the constraints' second time derivatives without accelerations.
-
-    Returns
-    -------
-    Vector, shape (n,)
-    """
+def _bordered_accelerations(A: Matrix, h: Vector, J: Matrix, c: Vector) -> Vector:
+    """Return the accelerations from A a - J^T lambda = h and J a = -c."""
     n, size = len(A), len(A) + len(J)
     bordered = np.zeros((size, size))
     bordered[:n, :n], bordered[:n, n:], bordered[n:, :n] = A, -J.T, J

@@ -15,7 +15,7 @@ from ...program.request import Solve
 from ...simulation.constraints.factorization import factored_constraints
 from ...simulation.inputs import Inputs
 from ...simulation.matrices import Matrices, MotionMatrices, Vector
-from .case import Result, holonom_result, reference_result
+from .case import Result, graded
 from .runs import problem
 
 TEXTBOOK, DIRECT = translatable("textbook formula"), translatable("direct")
@@ -49,10 +49,10 @@ def every_solve(file: str, scene: str | None = None) -> Mapping[str, SolveAt]:
     """
     matrices = MotionMatrices(problem(file, scene))
     return {
-        TEXTBOOK: lambda t, state: textbook(matrices(t, state)),
-        DIRECT: programmed(problem(file, scene)),
-        ORTHOGONAL: programmed(problem(file, scene, Solve.ORTHOGONAL)),
-        PIVOTED: lambda t, state: pivoted(matrices(t, state)),
+        TEXTBOOK: lambda t, state: _textbook(matrices(t, state)),
+        DIRECT: _programmed(problem(file, scene)),
+        ORTHOGONAL: _programmed(problem(file, scene, Solve.ORTHOGONAL)),
+        PIVOTED: lambda t, state: _pivoted(matrices(t, state)),
     }
 
 
@@ -78,23 +78,13 @@ def solve_digits(
         One solve's digits.
     """
     for name, correct in digits.items():
-        yield (reference_result if name in compared else holonom_result)(name, quantity, correct, needed)
+        yield graded(name, quantity, correct, needed, name in compared)
 
 
-def textbook(matrices: Matrices) -> Solved:
-    """Solve by the textbook formula.
+def _textbook(matrices: Matrices) -> Solved:
+    """Solve by the textbook formula, nan if a matrix is singular.
 
     It is lambda = -G^-1 (c + J A^-1 h), a = A^-1 (h + J^T lambda), G = J A^-1 J^T.
-
-    Parameters
-    ----------
-    matrices : Matrices
-        Matrices of the equations at a state.
-
-    Returns
-    -------
-    Solved
-        Solution, nan if a matrix is singular.
     """
     J = matrices.jacobian
     try:
@@ -106,34 +96,14 @@ def textbook(matrices: Matrices) -> Solved:
     return Solved(inverse_mass @ (matrices.force + J.T @ multipliers), multipliers)
 
 
-def pivoted(matrices: Matrices) -> Solved:
-    """Solve by the factorization of the robust engine.
-
-    Parameters
-    ----------
-    matrices : Matrices
-        Matrices of the equations at a state.
-
-    Returns
-    -------
-    Solved
-    """
+def _pivoted(matrices: Matrices) -> Solved:
+    """Solve by the factorization of the robust engine."""
     factored = factored_constraints(matrices.mass, matrices.jacobian)
     return Solved(*factored.unknowns(matrices.force, matrices.curvature))
 
 
-def programmed(motion: MotionProblem) -> SolveAt:
-    """Return a function that solves by the motion program.
-
-    Parameters
-    ----------
-    motion : MotionProblem
-
-    Returns
-    -------
-    SolveAt
-        Function of the time and of the state, shape (2n,).
-    """
+def _programmed(motion: MotionProblem) -> SolveAt:
+    """Return a function that solves by the motion program."""
     evaluate, n = NumpyFunction(motion.motion), len(motion.coordinates)
     inputs, g = Inputs(motion), len(motion.multipliers)
 

@@ -88,28 +88,9 @@ def prices(measurements: Sequence[Measurement]) -> Iterator[Price]:
     for method in dict.fromkeys(m.method for m in measurements if m.group in WHOLE_MOTION):
         falling = _falling([m for m in measurements if m.method == method and m.group in WHOLE_MOTION])
         if len(falling) >= FEWEST:
-            digits, slope = line_of(falling)
-            yield Price(method, math.exp(slope), min(digits), max(digits))
-
-
-def line_of(measurements: Sequence[Measurement]) -> tuple[list[float], float]:
-    """Return the digits of measurements, and the slope of log(time) against them.
-
-    Parameters
-    ----------
-    measurements : sequence of Measurement
-        Measurements of one method. Two or more.
-
-    Returns
-    -------
-    digits : list of float
-        Correct digits of each measurement.
-    slope : float
-        Slope of log(seconds) by digits.
-    """
-    digits = [-math.log10(m.error) for m in measurements]
-    slope, _ = np.polyfit(digits, [math.log(m.seconds) for m in measurements], 1)
-    return digits, float(slope)
+            digits = [-math.log10(m.error) for m in falling]
+            slope, _ = np.polyfit(digits, [math.log(m.seconds) for m in falling], 1)
+            yield Price(method, math.exp(float(slope)), min(digits), max(digits))
 
 
 def _falling(measurements: Sequence[Measurement]) -> list[Measurement]:

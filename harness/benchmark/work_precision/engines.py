@@ -6,7 +6,7 @@ Their problems have no singular configurations on the way.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,7 @@ from ...program.request import Solve
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
-from .measurement import BenchmarkCase, Group, Prepared, State, doubles, numbers_of
+from .measurement import Prepared, State, doubles, numbers_of
 from .operations import acceleration_program, expansion_operations
 
 if TYPE_CHECKING:
@@ -30,32 +30,7 @@ if TYPE_CHECKING:
 
 LARGEST_UNROLLED = 130  # operations of a motion program whose fastest code compiles in about a second
 HARDWARE = ("double", "extended")  # numbers for which the way of compiling matters
-
-
-def taylor_ladder(
-    problem: MotionProblem, until: Fraction, precision: str, tolerances: Sequence[float]
-) -> Iterator[BenchmarkCase]:
-    """Yield the Taylor engine in one precision, tolerance by tolerance.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    until : Fraction
-        Final time, in the scene's unit.
-    precision : str
-        Numbers to compute with, such as ``double`` or ``30``.
-    tolerances : sequence of float
-        Tolerances of a step, from coarse to fine.
-
-    Yields
-    ------
-    BenchmarkCase
-        One for each tolerance.
-    """
-    for tol in tolerances:
-        prepare = partial(prepare_taylor, problem, until, precision, tol, Stabilization.PROJECTION)
-        yield BenchmarkCase(Group.TAYLOR, taylor_name(precision), f"tol {tol:g}", until, prepare)
+RUNGE_KUTTA = translatable("Runge-Kutta engine")
 
 
 def taylor_name(precision: str) -> str:
@@ -90,58 +65,12 @@ def solve_name(solve: Solve) -> str:
     return translatable("solve: %(solve)s", solve=solve)
 
 
-def stabilizations(problem: MotionProblem, until: Fraction, tol: float) -> Iterator[BenchmarkCase]:
-    """Yield the stabilizations at one tolerance in double precision.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    until : Fraction
-        Final time, in the scene's unit.
-    tol : float
-        Tolerance of a step.
-
-    Yields
-    ------
-    BenchmarkCase
-        One for each stabilization.
-    """
-    for stabilization in Stabilization:
-        prepare = partial(prepare_taylor, problem, until, "double", tol, stabilization)
-        yield BenchmarkCase(
-            Group.STABILIZATION,
-            translatable("stabilization: %(method)s", method=stabilization),
-            f"tol {tol:g}",
-            until,
-            prepare,
-        )
-
-
-def the_two_solves(problems: Sequence[MotionProblem], until: Fraction, tol: float) -> Iterator[BenchmarkCase]:
-    """Yield a motion by each of its programs, at one tolerance in double precision.
-
-    Parameters
-    ----------
-    problems : sequence of MotionProblem
-        The motion by each solve.
-    until : Fraction
-        Final time, in the scene's unit.
-    tol : float
-        Tolerance of a step.
-
-    Yields
-    ------
-    BenchmarkCase
-        One for each solve.
-    """
-    for problem in problems:
-        prepare = partial(prepare_taylor, problem, until, "double", tol, Stabilization.PROJECTION)
-        yield BenchmarkCase(Group.SOLVE, solve_name(problem.motion.solve), f"tol {tol:g}", until, prepare)
-
-
 def prepare_taylor(
-    problem: MotionProblem, until: Fraction, precision: str, tol: float, stabilization: Stabilization
+    problem: MotionProblem,
+    until: Fraction,
+    precision: str,
+    tol: float,
+    stabilization: Stabilization = Stabilization.PROJECTION,
 ) -> Prepared:
     """Compile the Taylor engine for one precision and tolerance.
 
@@ -227,11 +156,8 @@ def _compact(problem: MotionProblem, precision: str) -> bool | None:
     return problem.motion.operations > LARGEST_UNROLLED if precision in HARDWARE else None
 
 
-RUNGE_KUTTA = translatable("Runge-Kutta engine")
-
-
-def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[BenchmarkCase]:
-    """Yield the Runge-Kutta engine, tolerance by tolerance.
+def prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> Prepared:
+    """Compile the Runge-Kutta engine for one tolerance.
 
     Parameters
     ----------
@@ -239,20 +165,14 @@ def runge_kutta_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequ
         The motion.
     until : Fraction
         Final time, in the scene's unit.
-    tolerances : sequence of float
-        Tolerances of a step, from coarse to fine.
+    tol : float
+        Tolerance of a step.
 
-    Yields
-    ------
-    BenchmarkCase
-        One for each tolerance.
+    Returns
+    -------
+    Prepared
+        The compiled engine, ready to run.
     """
-    for tol in tolerances:
-        prepare = partial(_prepare_runge_kutta, problem, until, tol)
-        yield BenchmarkCase(Group.RUNGE_KUTTA, RUNGE_KUTTA, f"tol {tol:g}", until, prepare)
-
-
-def _prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> Prepared:
     motion, operations = RungeKuttaEngine(problem, tol), acceleration_program(problem).operations
     run = Repeated(motion, float(until), lambda: motion.evaluations)
     return Prepared(run, doubles, lambda: run.work * operations)

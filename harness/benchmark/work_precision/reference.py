@@ -88,12 +88,8 @@ def find_reference(problem: "MotionProblem", times: Sequence[Fraction], digits: 
 
 def _states(problem: "MotionProblem", times: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
     numbers, states = read_precision(str(digits)), {}
-    motion = TaylorEngine(problem, _tolerance(digits), numbers, Stabilization.NONE)
+    motion = TaylorEngine(problem, 10.0**-digits, numbers, Stabilization.NONE)
     for time in times:
         motion.advance(numbers.ratio(time))
         states[time] = state_of(numbers, motion.state)
     return states
-
-
-def _tolerance(digits: int) -> float:
-    return 10.0**-digits

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...extras import missing_package
 from ...failures import ErrorKind, HolonomError
 from ...program.c_function import compile_c
-from .measurement import BenchmarkCase, Group, Prepared, doubles
+from .measurement import Prepared, doubles
 from .operations import acceleration_program
 
 if TYPE_CHECKING:
@@ -67,23 +67,8 @@ class RightHandSide:
         rates[self.coordinates :] = self._found
 
 
-def compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
-    """Return the motion program of a problem, compiled by the system's C compiler.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-
-    Returns
-    -------
-    CompiledRates
-
-    Raises
-    ------
-    HolonomError
-        As `holonom.program.c_function.compile_c`.
-    """
+def _compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
+    """Return the motion program of a problem, compiled by the system's C compiler."""
     program = acceleration_program(problem)
     return RightHandSide(compile_c(program).one, len(problem.coordinates), len(program.inputs))
 
@@ -91,34 +76,12 @@ def compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
 MOST_STEPS = 10_000_000  # of SUNDIALS, whose own limit of 500 is meant for one output after the other
 
 Floats = NDArray[np.float64]
+# Takes the first and last time, the initial state, and a relative and absolute tolerance, to the final state.
 Solver = Callable[[RightHandSide, tuple[float, float], Floats, float], Floats]
 
 
-def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """Return the final state by one of the methods of `scipy.integrate.solve_ivp`.
-
-    Parameters
-    ----------
-    method : str
-        ``DOP853``, ``LSODA`` or ``Radau``.
-    motion : CompiledRates
-        Time derivative of the state.
-    span : (float, float)
-        First and last time.
-    start : ndarray, shape (2n,)
-        Initial coordinates and velocities.
-    tol : float
-        Relative and absolute.
-
-    Returns
-    -------
-    ndarray, shape (2n,)
-
-    Raises
-    ------
-    HolonomError
-        The method gave up, with the reason.
-    """
+def _scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
+    """Return the final state by one of the methods of `scipy.integrate.solve_ivp`."""
     from scipy.integrate import solve_ivp
 
     solution = solve_ivp(motion, span, start, method=method, rtol=tol, atol=tol)
@@ -127,31 +90,10 @@ def scipy_solver(method: str, motion: RightHandSide, span: tuple[float, float], 
     return solution.y[:, -1]
 
 
-def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float) -> Floats:
-    """Return the final state by CVODE of SUNDIALS.
-
-    Parameters
-    ----------
-    method : str
-        ``Adams`` or ``BDF``.
-    motion : CompiledRates
-        Time derivative of the state.
-    span : (float, float)
-        First and last time.
-    start : ndarray, shape (2n,)
-        Initial coordinates and velocities.
-    tol : float
-        Relative and absolute tolerance.
-
-    Returns
-    -------
-    ndarray, shape (2n,)
-
-    Raises
-    ------
-    HolonomError
-        scikit-sundae is not installed, or CVODE gave up.
-    """
+def _sundials_solver(
+    method: str, motion: RightHandSide, span: tuple[float, float], start: Floats, tol: float
+) -> Floats:
+    """Return the final state by CVODE of SUNDIALS."""
     try:
         from sksundae.cvode import CVODE
     except ImportError:
@@ -164,13 +106,13 @@ def sundials_solver(method: str, motion: RightHandSide, span: tuple[float, float
 
 
 SOLVERS: Mapping[str, Solver] = {
-    **{f"SciPy {method}": partial(scipy_solver, method) for method in ("DOP853", "LSODA", "Radau")},
-    **{f"SUNDIALS {method}": partial(sundials_solver, method) for method in ("Adams", "BDF")},
+    **{f"SciPy {method}": partial(_scipy_solver, method) for method in ("DOP853", "LSODA", "Radau")},
+    **{f"SUNDIALS {method}": partial(_sundials_solver, method) for method in ("Adams", "BDF")},
 }
 
 
-def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[float]) -> Iterator[BenchmarkCase]:
-    """Yield each solver on the compiled motion program, tolerance by tolerance.
+def prepare_solver(problem: MotionProblem, until: Fraction, solver: Solver, tol: float) -> Prepared:
+    """Compile the motion program for one solver and tolerance.
 
     Parameters
     ----------
@@ -178,22 +120,17 @@ def solver_ladder(problem: MotionProblem, until: Fraction, tolerances: Sequence[
         The motion.
     until : Fraction
         Final time, in the scene's unit.
-    tolerances : sequence of float
-        Relative and absolute tolerances, from coarse to fine.
+    solver : callable
+        One of `SOLVERS`.
+    tol : float
+        Relative and absolute tolerance.
 
-    Yields
-    ------
-    BenchmarkCase
-        One for each solver and tolerance.
+    Returns
+    -------
+    Prepared
+        The solver, ready to run.
     """
-    for name, solver in SOLVERS.items():
-        for tol in tolerances:
-            prepare = partial(_prepare, problem, until, solver, tol)
-            yield BenchmarkCase(Group.SOLVER, name, f"tol {tol:g}", until, prepare)
-
-
-def _prepare(problem: MotionProblem, until: Fraction, solver: Solver, tol: float) -> Prepared:
-    motion, operations = compiled_right_hand_side(problem), acceleration_program(problem).operations
+    motion, operations = _compiled_right_hand_side(problem), acceleration_program(problem).operations
     span = float(problem.start["t"]), float(until)
     start = np.array([float(problem.start[name]) for name in problem.state])
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 
 from ...failures import ErrorKind, HolonomError
@@ -19,19 +20,18 @@ from ...structs import entry
 from ..machine import Machine, this_machine
 from .advice import Advice, Price, cheapest_methods, prices
 from .engines import (
+    RUNGE_KUTTA,
     operations_of_a_step,
-    runge_kutta_ladder,
+    prepare_runge_kutta,
+    prepare_taylor,
     solve_name,
-    stabilizations,
-    taylor_ladder,
     taylor_name,
-    the_two_solves,
 )
-from .measurement import EXACT_TIME, BenchmarkCase, Measurement, Omission
+from .measurement import EXACT_TIME, BenchmarkCase, Group, Measurement, Omission, Prepared
 from .reference import MORE_DIGITS, Reference, find_reference
 from .runner import measure, without_caches
 from .series import EXACT, Expansion, double_series, expansion_of, maxima_series, series_name
-from .solvers import SOLVERS, solver_ladder
+from .solvers import SOLVERS, prepare_solver
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,9 @@ class Plan:
         solvers = (len(SOLVERS) + 1) * len(self.solver_tolerances)  # the one is the Runge-Kutta engine
         return len(self.orders) + ladders + solvers + len(Stabilization) + len(Solve)
 
+
+Method = tuple[Group, str, Sequence[float], Callable[[float], Prepared]]
+"""Its group and name, its tolerances, and its preparation for one."""
 
 SECONDS_OF_MANY_DIGITS = 5e-8  # of an operation on numbers of 50 to 130 digits, measured on the pendulum and Andrews
 
@@ -124,7 +127,7 @@ def study(
     reference = find_reference(problem, times, plan.most_digits)
     series, unexpandable = _series(source, request, expansion, plan, reference)
     with without_caches():
-        results = measure(_cases(problems, until, expansion, plan), reference, advance)
+        results = measure(benchmark_cases(problems, until, expansion, plan), reference, advance)
     measurements = [*series, *(r for r in results if isinstance(r, Measurement))]
     omissions = [*unsolved, *unexpanded, *unexpandable, *beyond, *(r for r in results if isinstance(r, Omission))]
     return Study(
@@ -218,15 +221,42 @@ def _series(
     return measurements, omissions
 
 
-def _cases(
+def benchmark_cases(
     problems: Sequence[MotionProblem], until: Fraction, expansion: Expansion | None, plan: Plan
 ) -> Iterator[BenchmarkCase]:
-    problem = problems[0]
+    """Yield each method at each of its settings, Maxima's series left out.
+
+    Parameters
+    ----------
+    problems : sequence of MotionProblem
+        The motion by each solve.
+    until : Fraction
+        Final time, in the scene's unit.
+    expansion : Expansion or None
+        Motion and time of the series, or None without any.
+    plan : Plan
+        Settings of the methods.
+
+    Yields
+    ------
+    BenchmarkCase
+    """
     if expansion:
         yield from double_series(expansion, plan.orders)
+    for group, method, tolerances, prepare in _methods(problems, until, plan):
+        for tol in tolerances:
+            yield BenchmarkCase(group, method, f"tol {tol:g}", until, partial(prepare, tol))
+
+
+def _methods(problems: Sequence[MotionProblem], until: Fraction, plan: Plan) -> Iterator[Method]:
+    problem, compared = problems[0], (plan.compared_tolerance,)
     for precision, tolerances in plan.tolerances.items():
-        yield from taylor_ladder(problem, until, precision, tolerances)
-    yield from runge_kutta_ladder(problem, until, plan.solver_tolerances)
-    yield from solver_ladder(problem, until, plan.solver_tolerances)
-    yield from stabilizations(problem, until, plan.compared_tolerance)
-    yield from the_two_solves(problems, until, plan.compared_tolerance)
+        yield Group.TAYLOR, taylor_name(precision), tolerances, partial(prepare_taylor, problem, until, precision)
+    yield Group.RUNGE_KUTTA, RUNGE_KUTTA, plan.solver_tolerances, partial(prepare_runge_kutta, problem, until)
+    for name, solver in SOLVERS.items():
+        yield Group.SOLVER, name, plan.solver_tolerances, partial(prepare_solver, problem, until, solver)
+    for each in Stabilization:
+        name = translatable("stabilization: %(method)s", method=each)
+        yield Group.STABILIZATION, name, compared, partial(prepare_taylor, problem, until, "double", stabilization=each)
+    for each in problems:
+        yield Group.SOLVE, solve_name(each.motion.solve), compared, partial(prepare_taylor, each, until, "double")

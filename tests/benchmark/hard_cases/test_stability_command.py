@@ -9,7 +9,7 @@ from jsonschema import Draft202012Validator
 from refusing import message_of
 
 from holonom.benchmark.hard_cases import register
-from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, holonom_result, reference_result, required
+from holonom.benchmark.hard_cases.case import Case, Extent, Sweep, examined, graded, required
 from holonom.cli import holonom
 from holonom.document_types import schema
 from holonom.explanations import advice
@@ -23,12 +23,12 @@ def shown(name: str, *found) -> Case:
 
 PASSED = shown(
     "passed",
-    reference_result("plain", "place", 1.25, 6.0),
-    holonom_result("ours", "place", 9.0, 6.0),
+    graded("plain", "place", 1.25, 6.0, compared=True),
+    graded("ours", "place", 9.0, 6.0),
     required("ours", "reported", True),
     Sweep("angle", (0.1, 0.01), {"ours": (9.0, 8.0), "plain": (9.0, 7.0)}),
 )
-FAILED = shown("failed", holonom_result("ours", "place", 5.0, 6.0))
+FAILED = shown("failed", graded("ours", "place", 5.0, 6.0))
 
 
 def run(monkeypatch, cases, *arguments) -> int:

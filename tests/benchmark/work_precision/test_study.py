@@ -10,19 +10,13 @@ import mpmath
 import pytest
 from refusing import failing
 
-from holonom.benchmark.work_precision.engines import (
-    RUNGE_KUTTA,
-    runge_kutta_ladder,
-    stabilizations,
-    taylor_ladder,
-    the_two_solves,
-)
+from holonom.benchmark.work_precision.engines import RUNGE_KUTTA
 from holonom.benchmark.work_precision.measurement import WORKING_DIGITS, Group, Measurement, relative_error
 from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.runner import measure
-from holonom.benchmark.work_precision.series import double_series, expansion_of
-from holonom.benchmark.work_precision.solvers import SOLVERS, solver_ladder
-from holonom.benchmark.work_precision.study import Plan, study
+from holonom.benchmark.work_precision.series import expansion_of
+from holonom.benchmark.work_precision.solvers import SOLVERS
+from holonom.benchmark.work_precision.study import Plan, benchmark_cases, study
 from holonom.document_types import schema
 from holonom.failures import ErrorKind
 from holonom.figures.benchmark import study_figure
@@ -89,16 +83,8 @@ def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
 @pytest.mark.long
 @pytest.mark.usefixtures("c_compiler")
 def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
-    problem = problems[0]
-    cases = [
-        *double_series(expansion_of(problem, UNTIL), SHORT.orders),
-        *taylor_ladder(problem, UNTIL, "double", (1e-9,)),
-        *taylor_ladder(problem, UNTIL, "30", (1e-20,)),
-        *runge_kutta_ladder(problem, UNTIL, (1e-9,)),
-        *solver_ladder(problem, UNTIL, (1e-6,)),
-        *stabilizations(problem, UNTIL, 1e-10),
-        *the_two_solves(problems, UNTIL, 1e-10),
-    ]
+    plan = Plan(tolerances={"double": (1e-9,), "30": (1e-20,)}, solver_tolerances=(1e-6,), orders=SHORT.orders)
+    cases = list(benchmark_cases(problems, UNTIL, expansion_of(problems[0], UNTIL), plan))
     results = measure(cases, reference, lambda: None)
     for case, result in zip(cases, results, strict=True):
         prepared = case.prepare()
