@@ -172,6 +172,12 @@ class ProgramEngine:
 
     def _begin(self) -> None:
         self._length = self._first_block
+        if self._problem.tables:
+            self._set_values()
+
+    def _set_values(self) -> None:
+        """Set the values of open inputs in the equations from this time on."""
+        raise NotImplementedError
 
     def _keep_constraints(self) -> None:
         """Project the state, unless the integrator does so."""
@@ -179,11 +185,13 @@ class ProgramEngine:
     def _prepare_next(self, until: Any) -> None:
         """Prepare the next block."""
 
-    def _without_states(self, until: Any, most: int) -> tuple[Any, ...]:
-        return self._integrator.propagate_until(until, most, **self._bound)
+    def _take(self, until: Any, most: int, dense: bool) -> tuple[Taken, list[Step]]:
+        """Take steps as the integrator does, each with its states if `dense` is true."""
+        if dense:
+            return self._with_states(until, most)
+        return self._integrator.propagate_until(until, most, **self._bound)[:4], []
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
-        """Take steps as the integrator does, each with its states."""
         raise NotImplementedError
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
@@ -199,10 +207,7 @@ class ProgramEngine:
             return self.time == until, dense_steps
         integrator = self._integrator
         time_point, before = integrator.time, self.state.copy()
-        if dense:
-            (_, shortest, longest, steps), dense_steps = self._with_states(until, self._length)
-        else:
-            (_, shortest, longest, steps, *_), dense_steps = self._without_states(until, self._length), []
+        (_, shortest, longest, steps), dense_steps = self._take(until, self._length, dense)
         ended = integrator.time == until
         broken_off = steps < self._length and not ended
         longest, reached = max(self._usual, longest), until if broken_off else integrator.time
@@ -241,10 +246,7 @@ class ProgramEngine:
 
     def _watched_step(self, until: Any, dense: bool) -> list[Step]:
         time_point, before = self.time, self.state.copy()
-        if dense:
-            (outcome, _, step, _), dense_steps = self._with_states(until, 1)
-        else:
-            (outcome, _, step, *_), dense_steps = self._without_states(until, 1), []
+        (outcome, _, step, _), dense_steps = self._take(until, 1, dense)
         if outcome == self._failed:
             self._go_back(time_point, before)
             self._obstruction = self._obstruction_here(*self._why_no_step)
@@ -330,8 +332,9 @@ def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float
 
     Parameters
     ----------
-    end : number
-        Last time of the motion, in the numbers of the precision.
+    end : number or None
+        Last time of the motion, in the numbers of the precision, or None for the end of the scene's time span, whose
+        length is one if the scene gives none.
     problem : MotionProblem
         The motion, which gives the first time.
     precision : Precision
@@ -342,23 +345,7 @@ def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float
     float
         Per unit of time.
     """
+    if end is None:
+        first, last = map(float, problem.time_span or (0, 1))
+        return DECAYS_IN_A_RUN / (last - first)
     return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))
-
-
-def decay_in(problem: MotionProblem, decay: float | None) -> float:
-    """Return the rate gamma: the requested one, or `DECAYS_IN_A_RUN` per time span.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion, which gives the time span. Its length is one if the scene gives none.
-    decay : float or None
-        Requested rate, per unit of time.
-
-    Returns
-    -------
-    float
-        Per unit of time.
-    """
-    first, last = map(float, problem.time_span or (0, 1))
-    return DECAYS_IN_A_RUN / (last - first) if decay is None else decay

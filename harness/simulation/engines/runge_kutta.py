@@ -34,7 +34,7 @@ from ..nominal import Nominal
 from ..request import EngineName, Stabilization
 from .code import REFERENCE
 from .engine import Block, Step, Task
-from .program_engine import SHRUNK, ProgramEngine, Taken, decay_in, decay_until
+from .program_engine import SHRUNK, ProgramEngine, Taken, decay_until
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
 # seconds a step takes for an operation, in all its stages, and for everything else
@@ -70,10 +70,10 @@ class RungeKuttaEngine(ProgramEngine):
     tol : float or None
         Tolerance of a step, relative, and absolute in terms of nominal sizes, or None for `USUAL`.
     stabilization : Stabilization
-    decay : float or None
-        gamma of Baumgarte's and Gear's stabilization, as for `TaylorEngine`.
     matrices : MotionMatrices or None
         Of the same motion. None to make them.
+    end : float or None
+        The last time of the motion, as for `TaylorEngine`.
     max_step : float or None
         Largest step.
 
@@ -90,8 +90,8 @@ class RungeKuttaEngine(ProgramEngine):
         problem: MotionProblem,
         tol: float | None = None,
         stabilization: Stabilization = Stabilization.PROJECTION,
-        decay: float | None = None,
         matrices: MotionMatrices | None = None,
+        end: float | None = None,
         max_step: float | None = None,
     ) -> None:
         super().__init__(problem, read_precision("double"), True, matrices)
@@ -105,7 +105,7 @@ class RungeKuttaEngine(ProgramEngine):
         self.tol = USUAL if tol is None else tol
         begun = time.perf_counter()
         stabilization = stabilization if problem.multipliers else Stabilization.NONE
-        nominal, decay = self._matrices.nominal, decay_in(problem, decay)
+        nominal, decay = self._matrices.nominal, decay_until(end, problem, self.precision)
         self._integrator = DormandPrince(problem, self.tol, stabilization, decay, nominal, max_step or inf)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
@@ -116,8 +116,7 @@ class RungeKuttaEngine(ProgramEngine):
         problem, request, precision, end, matrices = task
         if precision.name != "double":
             raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
-        decay = decay_until(end, problem, precision)
-        return cls(with_values_in(problem), request.tol, request.stabilization, decay, matrices, request.max_step)
+        return cls(with_values_in(problem), request.tol, request.stabilization, matrices, end, request.max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -137,7 +136,7 @@ class RungeKuttaEngine(ProgramEngine):
         This is possible for a near time without an obstruction before it.
         """
         integrator = self._integrator
-        self._set_values()
+        self._begin()
         if self._obstruction is None:
             self.steps += integrator.quiet_steps(until, self._first_block)
             if integrator.time == until:
@@ -145,14 +144,8 @@ class RungeKuttaEngine(ProgramEngine):
             self._usual = max(self._usual, integrator.usual)
         super().advance(until)
 
-    def _begin(self) -> None:
-        super()._begin()
-        self._set_values()
-
     def _set_values(self) -> None:
-        """Give the program the polynomials that tables are from this time on."""
-        if self._problem.tables:
-            self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")
+        self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         return self._integrator.with_states(until, most)

@@ -28,7 +28,7 @@ from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, compilation, is_worthwhile, running
 from .engine import Block, Step, Task
-from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_in, decay_until
+from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_until
 from .scaled_time import ScaledTime, in_unit, unit_of
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
@@ -49,12 +49,10 @@ class TaylorEngine(ProgramEngine):
     compact : bool or None
         Whether to compile in compact mode. None to begin with code that is quickly compiled, and to compile better
         code when what is left of a run earns that back.
-    decay : float or None
-        gamma of Baumgarte's and Gear's stabilization, or None for `DECAYS_IN_A_RUN` by the scene's time span.
     matrices : MotionMatrices or None
         Of the same motion. None to make them.
     end : number or None
-        The last time of the motion, or None for the next one that it reaches.
+        The last time of the motion, or None for the next one that it reaches. `decay_until` takes it, too.
     max_step : float or None
         Largest step.
 
@@ -73,7 +71,6 @@ class TaylorEngine(ProgramEngine):
         precision: Precision | str = "double",
         stabilization: Stabilization = Stabilization.PROJECTION,
         compact: bool | None = None,
-        decay: float | None = None,
         matrices: MotionMatrices | None = None,
         end: Any = None,
         max_step: float | None = None,
@@ -94,7 +91,7 @@ class TaylorEngine(ProgramEngine):
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
         code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
         stabilized = stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and problem.multipliers
-        self._stabilization, self._decay = stabilization, decay_in(problem, decay) if stabilized else None
+        self._stabilization, self._decay = stabilization, decay_until(end, problem, numbers) if stabilized else None
         begun, number = time.perf_counter(), self.precision.number
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
@@ -120,9 +117,8 @@ class TaylorEngine(ProgramEngine):
             else -log10(checked_tolerance(request.tol, precision))
         )
         require_means(at_start(problem), precision, order_for(digits))
-        decay = decay_until(end, problem, precision)
         compact, max_step = request.compact, request.max_step
-        return cls(problem, request.tol, precision, request.stabilization, compact, decay, matrices, end, max_step)
+        return cls(problem, request.tol, precision, request.stabilization, compact, matrices, end, max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -154,7 +150,7 @@ class TaylorEngine(ProgramEngine):
             None if these steps reach the time or fail.
         """
         begun, state = self.time, self.state.copy()
-        outcome = self._without_states(until, trial)[0]
+        (outcome, *_), _ = self._take(until, trial, dense=False)
         covered = float(self.time - begun)
         self._integrator.time, self._integrator.state[:] = begun, state
         if outcome != import_heyoka().taylor_outcome.step_limit:
@@ -211,27 +207,23 @@ class TaylorEngine(ProgramEngine):
             self._counted = time_point, self.steps
 
     def _set_values(self) -> None:
-        """Set the values of open inputs in the equations from this time on."""
         contained = len(self._integrator.pars)
         if contained:
             self._integrator.pars[:] = self.inputs.open_values(self._integrator.time, "right")[:contained]
-
-    def _begin(self) -> None:
-        self._length = self._first_block
-        if self._problem.tables:
-            self._set_values()
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
         self._compile_if_worthwhile(until)
         return super()._block(until, dense)
 
     def _prepare_next(self, until: Any) -> None:
-        """Project, and choose the next block's length."""
+        """Project, and choose the next block's length, in which the drift stays allowed."""
         if self._keeper is None:
             self._length = self._longest_block
         else:
             drift = self._keeper.project(self.time, self.state)
-            self._length = min(block_within(self._allowed, self._length, drift), self._longest_block)
+            # the error of a velocity grows with the time, that of a position with its square
+            growth = min((self._allowed / drift) ** 0.5, GROWTH) if drift > 0 else GROWTH
+            self._length = max(1, min(int(self._length * growth), self._longest_block))
 
     @property
     def _is_finite(self) -> bool:
@@ -308,27 +300,6 @@ def states_of(begun: Any, rest: Any, unit: Any, coefficients: Numbers, times: Nu
         states *= since
     states += coefficients[0]
     return states
-
-
-def block_within(allowed: float, steps: int, drift: float) -> int:
-    """Return the length of a block in which the constraint drift stays allowed.
-
-    Parameters
-    ----------
-    allowed : float
-        Largest drift, as a relative distance.
-    steps : int
-        Number of steps of the block before.
-    drift : float
-        Drift after that block. The error of a velocity grows with the time, that of a position with its square.
-
-    Returns
-    -------
-    int
-        Number of steps.
-    """
-    growth = (allowed / drift) ** 0.5 if drift > 0 else GROWTH
-    return max(1, min(int(steps * min(growth, GROWTH)), LONGEST_BLOCK))
 
 
 def checked_tolerance(tol: float, precision: Precision) -> float:
