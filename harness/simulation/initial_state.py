@@ -24,8 +24,8 @@ from .constraints.directions import or_one
 from .evaluation import Numbers, batch_evaluation
 from .inputs import Inputs
 from .matrices import BatchMatrices
-from .nearest_root import ITERATIONS, ROUNDING, SETTLED, Linearized, NearestRoots
-from .nominal import nominal_of, share_of
+from .nearest_root import ROUNDING, Linearized, NearestRoots
+from .nominal import nominal_of
 from .residuals import constraint_residuals, scaled_residual
 
 LIMITED_DIGITS = 1e-9  # share of the largest datum by which data may be corrected, and of coordinates a residual
@@ -89,11 +89,11 @@ class InitialStates:
         with np.errstate(all="ignore"):
             for group in self._groups:
                 found &= self._corrected(group, states, values)
-                if len(group.solved) and group.only:
-                    elements = np.arange(len(found))
-                    found &= self._solved(states, values, group, group.solved, group.open, True, elements)
-                elif len(group.solved):
-                    found &= self._solved_nearby(states, values, group)
+                if len(group.solved):
+                    places = group.solved + group.half * self._n
+                    roots = self._roots(states, values, group, group.solved, group.open, group.only)
+                    states[places], arrived = roots(states[places], np.arange(len(found)), not group.only)
+                    found &= arrived
             at = self._matrices(self._time, states, values)
             for residual in constraint_residuals(at, states, self._nominal).values():
                 found &= residual <= LIMITED_DIGITS
@@ -155,61 +155,30 @@ class InitialStates:
         residual, moved = (at.residual_rate, states[n:]) if group.half else (at.residual, states[:n])
         sizes = np.split(self._nominal.state, 2)[group.half]
         missed = scaled_residual(residual[group.bound], at.jacobian[group.bound], moved, sizes) > ROUNDING
-        self._solved(states, values, group, group.given, group.bound, False, np.flatnonzero(missed))
+        some = np.flatnonzero(missed)
+        roots = self._roots(states, values, group, group.given, group.bound, only=False)
+        states[np.ix_(rows, some)], _ = roots(states[np.ix_(rows, some)], some, nearest=False)
         size = np.max(np.abs(data), axis=0)
         size = np.where(size > 0, size, np.max(self._nominal.state[rows]))
         return np.max(np.abs(states[rows] - data), axis=0) <= LIMITED_DIGITS * size
 
-    def _solved_nearby(self, states: Numbers, values: Numbers, group: "_Group") -> NDArray[np.bool_]:
-        """Replace numbers by the nearest ones that satisfy the constraints, in place.
-
-        Return True if there are any.
-        """
-        unknown, places = group.solved, group.solved + group.half * self._n
+    def _roots(
+        self, states: Numbers, values: Numbers, group: "_Group", unknown: Numbers, rows: Numbers, only: bool
+    ) -> NearestRoots:
+        """Return the search for numbers of a group that satisfy some of the constraints."""
+        places = unknown + group.half * self._n
 
         def linearize(points: Numbers, elements: NDArray[np.int64]) -> Linearized:
             trial = states[:, elements].copy()
             trial[places] = points
             at = self._matrices(self._time, trial, values[:, elements])
-            residual = (at.residual_rate if group.half else at.residual)[group.open]
-            return Linearized(residual, at.jacobian[np.ix_(group.open, unknown)], at.mass[np.ix_(unknown, unknown)])
+            residual = (at.residual_rate if group.half else at.residual)[rows]
+            return Linearized(residual, at.jacobian[np.ix_(rows, unknown)], at.mass[np.ix_(unknown, unknown)])
 
         def correct(at: Linearized) -> Numbers:
-            return least_step(at.mass, at.jacobian, at.residual, self._redundant)
+            return least_step(None if only else at.mass, at.jacobian, at.residual, self._redundant)
 
-        states[places], found = NearestRoots(linearize, correct, self._nominal.state[places])(states[places])
-        return found
-
-    def _solved(
-        self,
-        states: Numbers,
-        values: Numbers,
-        group: "_Group",
-        unknown: Numbers,
-        rows: Numbers,
-        only: bool,
-        active: Numbers,
-    ) -> NDArray[np.bool_]:
-        """Solve some of the constraints for some of the numbers by Newton's method.
-
-        The numbers are changed in place. Return True if it converges.
-        """
-        places = unknown + group.half * self._n
-        arrived = np.zeros(states.shape[1], dtype=bool)
-        for _ in range(ITERATIONS):
-            if not len(active):
-                break
-            at = self._matrices(self._time, states[:, active], values[:, active])
-            residual = (at.residual_rate if group.half else at.residual)[rows]
-            jacobian = at.jacobian[np.ix_(rows, unknown)]
-            mass = None if only else at.mass[np.ix_(unknown, unknown)]
-            change = least_step(mass, jacobian, residual, self._redundant)
-            here = states[np.ix_(places, active)]
-            states[np.ix_(places, active)] = here + change
-            share = share_of(change, here, self._nominal.state[places])
-            arrived[active] = share <= SETTLED
-            active = active[np.isfinite(share) & (share > ROUNDING)]
-        return arrived
+        return NearestRoots(linearize, correct, self._nominal.state[places])
 
 
 class InitialStatesBySign:

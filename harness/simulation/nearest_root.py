@@ -45,6 +45,8 @@ Correct = Callable[[Linearized], Numbers]  # the least corrections in the mass m
 class NearestRoots:
     """The search for roots near guesses.
 
+    It takes guesses, shape (u, k), and their elements to roots and whether there are any.
+
     Parameters
     ----------
     linearize, correct : callable
@@ -56,17 +58,17 @@ class NearestRoots:
     def __init__(self, linearize: Linearize, correct: Correct, sizes: Numbers) -> None:
         self._linearize, self._correct, self._sizes = linearize, correct, sizes
 
-    def __call__(self, guess: Numbers) -> tuple[Numbers, NDArray[np.bool_]]:
-        """Return the roots, shape (u, k), and whether there are any."""
-        elements = np.arange(guess.shape[1])
-        roots, found = self._newton(guess, elements)
-        if len(guess) <= MOST_SEARCHED:
+    def __call__(
+        self, guess: Numbers, elements: NDArray[np.int64], nearest: bool = True
+    ) -> tuple[Numbers, NDArray[np.bool_]]:
+        """Return the nearest roots, or those that Newton's method finds by full steps."""
+        roots, found = self._newton(guess, elements, damped=nearest)
+        if nearest and len(guess) <= MOST_SEARCHED:
             searched = np.flatnonzero(~(found & self._contracts(guess, elements)))
             roots[:, searched], found[searched] = self._search(guess, roots, found, searched)
         return roots, found
 
-    def _newton(self, start: Numbers, elements: NDArray[np.int64]) -> tuple[Numbers, NDArray[np.bool_]]:
-        """Damped iteration from each start."""
+    def _newton(self, start: Numbers, elements: NDArray[np.int64], damped: bool) -> tuple[Numbers, NDArray[np.bool_]]:
         points, found, active = start.copy(), np.zeros(len(elements), dtype=bool), np.arange(len(elements))
         for _ in range(ITERATIONS):
             if not len(active):
@@ -75,20 +77,22 @@ class NearestRoots:
             at = self._linearize(here, elements[active])
             change = self._correct(at)
             share = share_of(change, here, self._sizes)
-            points[:, active] = self._stepped(here, change, at, elements[active], share <= SETTLED)
-            found[active] = share <= SETTLED
+            settled = share <= SETTLED
+            full = settled if damped else np.ones_like(settled)
+            points[:, active] = self._stepped(here, change, at, elements[active], full)
+            found[active] = settled
             active = active[np.isfinite(share) & (share > ROUNDING)]
         return points, found & np.isfinite(points).all(axis=0)
 
     def _stepped(
-        self, here: Numbers, change: Numbers, at: Linearized, elements: NDArray[np.int64], settled: NDArray[np.bool_]
+        self, here: Numbers, change: Numbers, at: Linearized, elements: NDArray[np.int64], full: NDArray[np.bool_]
     ) -> Numbers:
         """Return points along the corrections with shorter next corrections.
 
-        If there is none, it is the full step.
+        If there is none, or `full` is true, it is the full step.
         """
         result, size, share = here + change, self._largest(change), 1.0
-        open_ = np.flatnonzero(~settled)
+        open_ = np.flatnonzero(~full)
         for _ in range(HALVINGS):
             if not len(open_):
                 break
@@ -142,7 +146,7 @@ class NearestRoots:
                 far = distance[active] if reach is None else reach * size[active]
                 improved = np.zeros(len(active), dtype=bool)
                 for step in _starts(here.mass[..., active], far):
-                    points, arrived = self._newton(near[:, active] + step, elements[active])
+                    points, arrived = self._newton(near[:, active] + step, elements[active], damped=True)
                     way = np.where(arrived, _distance(points - near[:, active], here.mass[..., active]), np.inf)
                     better = way < share * distance[active]
                     improved |= better
