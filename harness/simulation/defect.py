@@ -56,7 +56,7 @@ class DefectControl:
         if parts > 1:
             for first in range(0, parts, AT_ONCE):
                 edges = step.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
-                self.error = max(self.error, self._error_between(edges, step), key=_size)
+                self.error = float(np.maximum(self.error, self._error_between(edges, step)))  # nan stays
 
     def _error_between(self, edges: Numbers, step: Step) -> float:
         half = (edges[1:] - edges[:-1]) / 2
@@ -69,8 +69,3 @@ class DefectControl:
         error = as_floats(np.diff(velocities, axis=1) - gained) / sizes
         largest = np.max(np.abs(as_floats(velocities) / sizes), initial=1.0)
         return float(np.max(np.abs(error), initial=0.0) / largest)
-
-
-def _size(error: float) -> float:
-    """Return the error, infinite if it is not a number."""
-    return error if error == error else np.inf

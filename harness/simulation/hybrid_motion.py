@@ -38,7 +38,7 @@ from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation
-from .events import Events, values_in
+from .events import Events, Values, values_in
 from .friction_modes import FrictionModes, modes_that_may_agree
 from .inputs import Inputs
 from .matrices import Matrices, Vector
@@ -280,13 +280,8 @@ class HybridMotion:
         """Return True if accelerations are hardly unique: multipliers grow."""
         if not self.problem.reacting:
             return False
-        modes, t, state = self._lasting_modes(self.mode.pattern), np.array([self.time]), self.state[:, None]
-
-        def guards(times: Numbers, states: Numbers) -> Numbers:
-            return modes.guards(self._inputs(times, states))
-
-        changes = first_order_changes(guards, t, state, self.nominal)
-        return bool((np.abs(guards(t, state)) <= NEAR * changes).any())
+        guards = self._lasting_modes(self.mode.pattern).guards
+        return bool(self._near_zero(lambda *at: guards(self._inputs(*at)), NEAR, self.time, self.state).any())
 
     # ---- releases ----
 
@@ -384,9 +379,8 @@ class HybridMotion:
         """Return the signs that are zero, and that the accelerations decide about."""
         if known.issuperset(self._signs):
             return list(self._signs)
-        functions, times, states = self.mode.switching_functions, np.array([t]), state[:, None]
-        values = functions.values(times, states)[:, 0]
-        small = np.abs(values) <= ZERO * first_order_changes(functions.values, times, states, self.nominal)[:, 0]
+        functions = self.mode.switching_functions
+        small = self._near_zero(functions.values, ZERO, t, state)
         zeros = {name for name, is_small in zip(functions.names, small, strict=True) if is_small} & self._signs.keys()
         return [
             name
@@ -546,20 +540,15 @@ class HybridMotion:
         return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
-        """Return True if a `switching_function` is within rounding of zero.
+        """Return True if a `switching_function` is within rounding of zero."""
+        function = self._function(name, sign, pattern)
+        return bool(self._near_zero(lambda *at: function(self._inputs(*at)), ZERO, t, state)[0])
 
-        Its rounding is relative to its changes with the state and the time.
-        """
-        changes = self._changes(self._function(name, sign, pattern), t, state)
-        return abs(self._output(name, sign, pattern, t, state)) <= ZERO * changes
-
-    def _changes(self, function: Evaluation, t: Any, state: Numbers) -> float:
-        """Return the changes of a function by nominal changes of state and time."""
-
-        def values(times: Numbers, states: Numbers) -> Numbers:
-            return function(self._inputs(times, states))
-
-        return first_order_changes(values, np.array([t]), state[:, None], self.nominal)[0, 0]
+    def _near_zero(self, functions: Values, share: float, t: Any, state: Numbers) -> Vector:
+        """Return True for functions within a share of their changes with state and time."""
+        at = np.array([t]), state[:, None]
+        changes = first_order_changes(functions, *at, self.nominal)
+        return (np.abs(as_floats(functions(*at))) <= share * changes)[:, 0]
 
     def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
         what = name, sign.name, frozenset(pattern.items())
