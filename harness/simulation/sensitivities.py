@@ -21,7 +21,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.friction import SLIDING
@@ -41,7 +40,7 @@ from .matrices import start_of
 from .mode import Mode
 from .nominal import Nominal, first_order_changes, nominal_of
 from .recording import SampleBlock
-from .variation import TIME, Variation, size_of
+from .variation import TIME, Variation, no_sensitivity, size_of
 from .variational_equations import VariationalEquations, largest
 
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
@@ -141,9 +140,8 @@ class _ModeVariation:
         steps = _Polynomials(len(state))
         integrator.propagate_until(end / unit, write_tc=True, callback=steps)
         if integrator.time != end / unit or not np.isfinite(integrator.state).all():
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("they are not finite beyond t = %(time)s", time=f"{steps.last * unit:.6g}"),
+            raise no_sensitivity(
+                translatable("they are not finite beyond t = %(time)s", time=f"{steps.last * unit:.6g}")
             )
         reached, grown = np.split(integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
@@ -159,13 +157,12 @@ class _ModeVariation:
         self._compile_if_worthwhile(len(steps) * left / (end - start))
         there = sizes * reached, rows * units * grown.reshape(moves.shape)
         if self.variation.defect(end, *there) > DISTANCE:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable(
+            raise no_sensitivity(
+                translatable(
                     "they leave the constraints before t = %(time)s, where those that the equations are solved with "
                     "become dependent",
                     time=f"{end:.10g}",
-                ),
+                )
             )
         return [_Segment(start, end, self, derivatives)], there[0], self.variation.corrected(end, *there)
 
@@ -206,10 +203,7 @@ class _ModeVariation:
         solved = self.mode.engine.solutions(times, states).multipliers
         *changes, rate = variation(times, states, along_it, solved)[0, :, 0]
         if not rate:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("a zero is only touched at t = %(time)s", time=f"{t:.10g}"),
-            )
+            raise no_sensitivity(translatable("a zero is only touched at t = %(time)s", time=f"{t:.10g}"))
         return -np.array(changes) / rate
 
     def at_moving_time(self, t: float, state: Numbers, moves: Numbers, delays: Numbers) -> dict[str, Numbers]:
@@ -256,16 +250,15 @@ class Sensitivities:
     ) -> None:
         self._problem, self.directions, self._tol, self._end = problem, tuple(directions), tol, end
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable(
+            raise no_sensitivity(
+                translatable(
                     "unknown name %(name)s: expected a parameter or one of %(names)s",
                     name=unknown[0],
                     names=", ".join(problem.state),
-                ),
+                )
             )
         if problem.reacting:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=translatable("forces contain multipliers"))
+            raise no_sensitivity(translatable("forces contain multipliers"))
         self._sizes = np.array([float(size_of(problem, name)) for name in directions])
         self._modes: dict[Mode, _ModeVariation] = {}
         self._nominal = nominal_of(begun.problem)
@@ -352,10 +345,7 @@ class Sensitivities:
             if inside.any():
                 moves[:, :, inside] = piece.moves(times[inside])
         if np.isnan(moves).any():
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("they are not known to t = %(time)s", time=f"{times[-1]:.10g}"),
-            )
+            raise no_sensitivity(translatable("they are not known to t = %(time)s", time=f"{times[-1]:.10g}"))
         return here.derivatives(times, states, moves)
 
     def _of(self, mode: Mode) -> _ModeVariation:
@@ -377,10 +367,7 @@ class Sensitivities:
         """Reject derivatives if their motion differs from the recorded one."""
         allowed = max(DISTANCE, TOLERATED * (self._tol or 0.0))
         if self._state is not None and self._nominal.share(state - self._state, state) > allowed:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("steps become too coarse at t = %(time)s", time=f"{self._time:.10g}"),
-            )
+            raise no_sensitivity(translatable("steps become too coarse at t = %(time)s", time=f"{self._time:.10g}"))
 
     def _at_knot(self, step: Step) -> bool:
         """Return True if a table's next polynomial begins with a step."""
@@ -417,10 +404,7 @@ class Sensitivities:
             return _Zero(before.problem, before.problem.ends.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
         if len(changed) != 1:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("several signs change at t = %(time)s", time=f"{self._time:.10g}"),
-            )
+            raise no_sensitivity(translatable("several signs change at t = %(time)s", time=f"{self._time:.10g}"))
         if before.pattern[changed[0]] == SLIDING:
             return None
         return _switching_zero(before, changed[0])
@@ -456,9 +440,8 @@ class Sensitivities:
         return np.where(is_there & (np.abs(found * self._sizes) > least), found, 0.0)
 
     def _reject_start(self, sign: Sign) -> None:
-        raise HolonomError(
-            ErrorKind.NO_SENSITIVITY,
-            detail=translatable("they depend on the side, as the motion starts where %(of)s is zero", of=sign.of),
+        raise no_sensitivity(
+            translatable("they depend on the side, as the motion starts where %(of)s is zero", of=sign.of)
         )
 
 

@@ -33,6 +33,7 @@ from .residuals import condition, residuals
 from .result import Report, Sampled, Samples, Simulation, joined
 from .sensitivities import Sensitivities
 from .uniqueness import undetermined_outputs
+from .variation import no_sensitivity
 
 Progress = Callable[[float], None]
 TakeSamples = Callable[[Sampled], None]
@@ -129,11 +130,11 @@ def _require_derivatives(problem: MotionProblem, parametrized: MotionProblem, re
         return
     if read_precision(str(request.precision)).name != "double":
         detail = translatable("they are integrated in double precision alone")
-        raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
+        raise no_sensitivity(detail)
     constants = set(problem.parameters) - set(parametrized.parameters)
     if constants & set(request.sensitivities):
         detail = translatable("this engine, or this stabilization, integrates with constant parameters")
-        raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=detail)
+        raise no_sensitivity(detail)
 
 
 def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:

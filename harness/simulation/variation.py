@@ -11,6 +11,7 @@ from math import floor, log10
 
 import numpy as np
 
+from ..failures import ErrorKind, HolonomError
 from ..program.differentiation import Seeds, along, derivative_name, differentiated
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
@@ -61,6 +62,21 @@ def size_of(problem: MotionProblem, name: str) -> Fraction:
     """
     value = problem.values.get(name)
     return Fraction(10) ** floor(log10(abs(value))) if value else ONE
+
+
+def no_sensitivity(reason: str) -> HolonomError:
+    """Return the error of a motion without the derivatives that are asked for.
+
+    Parameters
+    ----------
+    reason : str
+        Clause about them.
+
+    Returns
+    -------
+    HolonomError
+    """
+    return HolonomError(ErrorKind.NO_SENSITIVITY, detail=reason)
 
 
 class Variation:

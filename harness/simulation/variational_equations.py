@@ -12,7 +12,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.differentiation import along, derivative_name, differentiated, solution_differentiated
 from ..program.heyoka_function import heyoka_expressions, import_heyoka
@@ -28,7 +27,7 @@ from .initial_tangents import ConstraintVariation
 from .inputs import Inputs, heyoka_inputs
 from .matrices import MotionMatrices, start_of
 from .nominal import Nominal
-from .variation import Variation, size_of
+from .variation import Variation, no_sensitivity, size_of
 
 PROBES = np.array([0.0, 0.3127, -0.7411])  # in these units, at the initial time: where a parameter may have an effect
 NO_MOVE = 1e-6  # of the state, by a direction of nominal size: smaller derivatives may be rounding errors of it
@@ -55,12 +54,9 @@ class VariationalEquations:
 
     def __init__(self, problem: MotionProblem, directions: Sequence[str], matrices: MotionMatrices) -> None:
         if problem.obstruction is not None:
-            raise HolonomError(ErrorKind.NO_SENSITIVITY, detail=problem.obstruction)
+            raise no_sensitivity(problem.obstruction)
         if closed := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
-            raise HolonomError(
-                ErrorKind.NO_SENSITIVITY,
-                detail=translatable("the equations are made for one value of %(name)s", name=closed[0]),
-            )
+            raise no_sensitivity(translatable("the equations are made for one value of %(name)s", name=closed[0]))
         self.problem, self.directions, self.kind = problem, tuple(directions), ("variational", *directions)
         self._matrices, self.inputs = matrices, Inputs(problem)
         self.units = Nominal(*map(units_near, matrices.nominal))

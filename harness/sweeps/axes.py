@@ -294,22 +294,19 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
             detail = translatable(
                 "%(name)s=%(given)s: expected an integer from %(least)s on", name=name, given=repr(given), least=least
             )
-            raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=detail)
+            raise _error(detail)
     names = [axis.name for axis in chain(values, samples)]
     if not names:
         raise HolonomError(ErrorKind.NOTHING_VARIES)
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=translatable("%(twice)s is varied twice", twice=twice))
+        raise _error(translatable("%(twice)s is varied twice", twice=twice))
     if bool(samples) != (size is not None):
         missing = translatable("a sample needs its --size") if samples else translatable("--size needs a --sample")
-        raise HolonomError(ErrorKind.NOT_AN_AXIS, detail=missing)
+        raise _error(missing)
     axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS,
-            detail=translatable(
-                "these are %(rows)s rows; at most %(most)s are allowed", rows=axes.rows, most=MOST_ROWS
-            ),
+        raise _error(
+            translatable("these are %(rows)s rows; at most %(most)s are allowed", rows=axes.rows, most=MOST_ROWS)
         )
     return axes
 
@@ -339,9 +336,7 @@ def grid(name: str, first: Number, last: Number, count: int | str, text: str | N
     """
     text = text or f"{name}={first}:{last}:{count}"
     if not str(count).isdecimal() or not 1 <= len(str(count)) <= 12 or int(count) < 1:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(text)s: the count is not a positive integer", text=text)
-        )
+        raise _error(translatable("%(text)s: the count is not a positive integer", text=text))
     return Grid(_required_name(name, text), _number(first, text), _number(last, text), int(count), text)
 
 
@@ -395,26 +390,16 @@ def sample(name: str, drawn: str, text: str | None = None) -> Sample:
     text = text or f"{name}={drawn}"
     found = DRAWN.fullmatch(drawn.strip())
     if found is None or found[1] not in set(Distribution):
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS,
-            detail=translatable(
-                "%(text)s: expected %(names)s(NUMBER,NUMBER)", text=text, names=", ".join(Distribution)
-            ),
+        raise _error(
+            translatable("%(text)s: expected %(names)s(NUMBER,NUMBER)", text=text, names=", ".join(Distribution))
         )
     kind, first, second = Distribution(found[1]), _number(found[2], text), _number(found[3], text)
     if kind is Distribution.NORMAL and not second > 0:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(text)s: the deviation is not positive", text=text)
-        )
+        raise _error(translatable("%(text)s: the deviation is not positive", text=text))
     if kind is not Distribution.NORMAL and not first < second:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS,
-            detail=translatable("%(text)s: the smallest value is not below the largest", text=text),
-        )
+        raise _error(translatable("%(text)s: the smallest value is not below the largest", text=text))
     if kind is Distribution.LOGUNIFORM and not first > 0:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(text)s: loguniform needs positive values", text=text)
-        )
+        raise _error(translatable("%(text)s: loguniform needs positive values", text=text))
     return Sample(_required_name(name, text), kind, first, second, text)
 
 
@@ -422,9 +407,7 @@ def _read_grid(text: str) -> Grid:
     name, rest = _named(text)
     parts = [part.strip() for part in rest.split(":")]
     if len(parts) != 3:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text)
-        )
+        raise _error(translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text))
     return grid(name, *parts, text)
 
 
@@ -444,22 +427,19 @@ def _named(text: str) -> tuple[str, str]:
 
 def _required_name(name: str, text: str) -> str:
     if not NAME.fullmatch(name.strip()):
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(text)s: the name of the parameter is missing", text=text)
-        )
+        raise _error(translatable("%(text)s: the name of the parameter is missing", text=text))
     return name.strip()
 
 
 def _number(given: Number, whole: str) -> float:
     text = str(given).strip()
     if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS,
-            detail=translatable("%(whole)s: expected a number, not %(text)s", whole=whole, text=repr(text)),
-        )
+        raise _error(translatable("%(whole)s: expected a number, not %(text)s", whole=whole, text=repr(text)))
     try:
         return float(Fraction(text))
     except ZeroDivisionError:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS, detail=translatable("%(whole)s: division by zero", whole=whole)
-        ) from None
+        raise _error(translatable("%(whole)s: division by zero", whole=whole)) from None
+
+
+def _error(reason: str) -> HolonomError:
+    return HolonomError(ErrorKind.NOT_AN_AXIS, detail=reason)

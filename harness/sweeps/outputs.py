@@ -193,7 +193,20 @@ def _time(written: str, text: str) -> Fraction:
         raise _error(text, translatable("it names no time")) from None
 
 
+def not_an_output(reason: str) -> HolonomError:
+    """Return the error of an output that is none of a motion.
+
+    Parameters
+    ----------
+    reason : str
+        Clause about it.
+
+    Returns
+    -------
+    HolonomError
+    """
+    return HolonomError(ErrorKind.NOT_AN_OUTPUT, detail=reason)
+
+
 def _error(text: str, reason: str) -> HolonomError:
-    return HolonomError(
-        ErrorKind.NOT_AN_OUTPUT, detail=translatable("%(text)s: %(reason)s", text=text[:60], reason=reason)
-    )
+    return not_an_output(translatable("%(text)s: %(reason)s", text=text[:60], reason=reason))

@@ -3,11 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.heyoka_function import heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, Program, names_in
+from .outputs import not_an_output
 
 Known = Mapping[str, Any]
 
@@ -30,11 +30,10 @@ def require_known(problem: MotionProblem, quantities: Sequence[Expression]) -> N
     there = ("t", *problem.state, *solved_names(problem), *observed_names(problem), *problem.parameters, "energy")
     for quantity in quantities:
         if unknown := sorted(names_in(quantity) - set(there)):
-            raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT,
-                detail=translatable(
+            raise not_an_output(
+                translatable(
                     "unknown quantity %(name)s: expected one of %(names)s", name=unknown[0], names=", ".join(there)
-                ),
+                )
             )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..explanations import unresolved
-from ..failures import ErrorKind, HolonomError
+from ..failures import HolonomError
 from ..language import translatable
 from ..program.differentiation import derivative_name
 from ..program.heyoka_function import import_heyoka
@@ -43,7 +43,7 @@ from ..simulation.zeros import ZERO
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size
-from .outputs import ALONG, EXTREMES, Kind, OutputQuantity
+from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output
 from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
 from .request import TOLERANCE
 from .series import batch_radii
@@ -116,9 +116,8 @@ class RowMaker:
         self._seen_outputs = [*self._extremes, *(each for each in plan.outputs if each.kind is Kind.FREE), *self._zeros]
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
-            raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT,
-                detail=translatable("%(name)s is a column of every sweep; give another name to it", name=taken[0]),
+            raise not_an_output(
+                translatable("%(name)s is a column of every sweep; give another name to it", name=taken[0])
             )
 
     @property
@@ -222,12 +221,14 @@ class RowMaker:
         well = ended & found.arrived & trusted({**left, "energy": energy}, self.plan.tol, found.steps)
         done = there[well]
         at = dict(zip(times, found.states, strict=True))
-        points = {stop: self._at(np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked}
+        points = {
+            stop: self._values(self._points, np.minimum(stop, ends), at[stop], values)[:, well] for stop in self._asked
+        }
         rows.residual[done] = residual[well]
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
         seen = found.seen
         if self._crossing:
-            seen = self._without_rounding(seen, self._crossing_at, states, values, nominal)
+            seen = self._without_rounding(seen, self._crossing, states, values, nominal)
         self._keep_along(rows, done, seen[:, well])
         return there[~well]
 
@@ -237,11 +238,11 @@ class RowMaker:
         if not self._problem.ends.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
         found = self._ending_engine.integrate(states, values, [self._end])
-        zeros = self._without_rounding(found.seen, self._events_at, states, values, nominal)
+        zeros = self._without_rounding(found.seen, self._events, states, values, nominal)
         return np.fmin(self._end, np.fmin.reduce(zeros)), found.arrived
 
     def _without_rounding(
-        self, seen: Floats, quantities_at: Evaluation, states: Floats, values: Floats, nominal: Nominal
+        self, seen: Floats, quantities: Sequence[Expression], states: Floats, values: Floats, nominal: Nominal
     ) -> Floats:
         """Return recorded numbers, zeros among rounding errors left out.
 
@@ -249,8 +250,7 @@ class RowMaker:
         """
 
         def at(times: Floats, states: Floats) -> Floats:
-            repeated = np.tile(values, states.shape[1] // values.shape[1])
-            return quantities_at(np.concatenate([times[None], states, repeated]))
+            return self._values(quantities, times, states, np.tile(values, states.shape[1] // values.shape[1]))
 
         changes = first_order_changes(at, np.full(states.shape[1], self._start), states, nominal)
         count = len(changes)
@@ -336,17 +336,10 @@ class RowMaker:
         time = self._end if output.time is None else float(output.time)
         if not self._start <= time <= self._end:
             span = f"{self._start:.10g} to {self._end:.10g}"
-            raise HolonomError(
-                ErrorKind.NOT_AN_OUTPUT,
-                detail=translatable(
-                    "%(text)s asks for a time outside of the motion, %(span)s", text=output.text, span=span
-                ),
+            raise not_an_output(
+                translatable("%(text)s asks for a time outside of the motion, %(span)s", text=output.text, span=span)
             )
         return time
-
-    def _at(self, times: Floats, states: Floats, values: Floats) -> Floats:
-        """Return the quantities recorded at times, shape (quantities, k)."""
-        return self._points_at(np.concatenate([times[None], states, values]))
 
     # ---- compiled when first needed ----
 
@@ -386,23 +379,17 @@ class RowMaker:
         projects = self.plan.stabilization is Stabilization.PROJECTION
         return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
 
-    @cached_property
-    def _points_at(self) -> Evaluation:
-        return self._compiled(self._points)
-
-    @cached_property
-    def _crossing_at(self) -> Evaluation:
-        return self._compiled(self._crossing)
-
-    @cached_property
-    def _events_at(self) -> Evaluation:
-        return self._compiled(self._events)
+    def _values(self, quantities: Sequence[Expression], times: Floats, states: Floats, values: Floats) -> Floats:
+        """Return quantities of motions, shape (quantities, k)."""
+        if not quantities:
+            return np.empty((0, len(times)))
+        evaluate = self._problem.once(
+            ("quantities", *quantities), self._problem.motion, lambda: self._compiled(quantities)
+        )
+        return evaluate(np.concatenate([times[None], states, values]))
 
     def _compiled(self, quantities: Sequence[Expression]) -> Evaluation:
-        """Return the function of quantities that takes times, states and values."""
         heyoka = import_heyoka()
-        if not quantities:
-            return lambda inputs: np.empty((0, inputs.shape[1]))
         known = {name: heyoka.expression(name) for name in ("t", *self._problem.state, *self._problem.parameters)}
         found = expressions_of(quantities, along_motion(self._problem, known))
         return in_full_vectors(heyoka.cfunc(found, vars=list(known.values())))
@@ -427,13 +414,12 @@ def _require_smooth(problem: MotionProblem, recorded: Sequence[OutputQuantity]) 
             continue
         for name in sorted(names_in(each.quantity) & set(problem.outputs.outputs)):
             if _has_corners(computing(problem.outputs, {name})):
-                raise HolonomError(
-                    ErrorKind.NOT_AN_OUTPUT,
-                    detail=translatable(
+                raise not_an_output(
+                    translatable(
                         "%(text)s contains %(name)s, which has a corner and can be recorded at times only",
                         text=each.text,
                         name=name,
-                    ),
+                    )
                 )
 
 
@@ -449,14 +435,13 @@ def _require_directions(problem: MotionProblem, derivatives: Sequence[OutputQuan
             (output.direction, (*problem.parameters, *problem.state)),
         ):
             if name not in known:
-                raise HolonomError(
-                    ErrorKind.NOT_AN_OUTPUT,
-                    detail=translatable(
+                raise not_an_output(
+                    translatable(
                         "%(text)s contains %(name)s: expected one of %(names)s",
                         text=output.text,
                         name=name,
                         names=", ".join(known),
-                    ),
+                    )
                 )
 
 
