@@ -29,7 +29,7 @@ from ..program.motion_problem import MotionProblem, Sign
 from ..program.motion_program import Program
 from ..program.precision import read_precision
 from ..program.sign_pattern import problem_in, switching_function
-from .engines.code import Code, better_code, is_worthwhile
+from .engines.code import better_code, codes_for, is_worthwhile
 from .engines.engine import Step
 from .engines.taylor import states_of
 from .evaluation import Numbers, as_floats, evaluation_once
@@ -103,7 +103,7 @@ class _ModeVariation:
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
         self.mode, self.problem, self._directions, self._tol = mode, mode.problem, directions, tol
         self.variation = VariationalEquations(self.problem, directions, mode.matrices)
-        self._code = Code.QUICK
+        self._code = codes_for(self.variation.program.operations, read_precision("double"))[0]
         self._integrator = self._compiled()
 
     def _compiled(self) -> Any:
@@ -217,7 +217,8 @@ class _ModeVariation:
         return np.array([t]), state[:, None], moves[:, :, None]
 
     def _compile_if_worthwhile(self, steps: float) -> None:
-        better, operations = better_code(self._code, read_precision("double")), self.variation.program.operations
+        operations = self.variation.program.operations
+        better = better_code(self._code, operations, read_precision("double"))
         if better and is_worthwhile(self._code, better, operations, steps, self._integrator.tol):
             self._code = better
             self._integrator = self._compiled()

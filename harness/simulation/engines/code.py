@@ -1,53 +1,88 @@
 """Options of heyoka's compiler, and the choice between them.
 
-Measured at tolerance 1e-15 on the pendulum of controlled length to t = 100, the chain with N = 8 and Andrews' squeezer
-to the end of their time spans. 16, 212 and 438 operations:
+Measured on a pendulum, the crane, and chains with N = 4, 8 and 16: 12, 38, 100, 208 and 424 operations. The first line
+of each code is for a tolerance of 1e-9, the second for 1e-15:
 
-               seconds to compile      milliseconds to run
-    quick      0.011  0.031  0.14      0.60  1.57  7.4
-    compact    0.047  0.18   0.5       0.24  0.61  2.4
-    unrolled   0.080  2.4    11        0.17  0.46  1.9
+               milliseconds to compile      microseconds a step
+    quick      12   15   30   43   66       0.98  2.2   11    18    50
+               12   18   22   49   76       2.1   4.6   16    54   110
+    plain       7   14   49   95  239       0.28  0.53   2.6   5.3  19
+               13   24   63  196  714       0.46  1.2    4.1   9.9  77
+    compact    69  155  605  684 1172       0.36  0.73   3.2   8.4  23
+               78  165  385  714 1400       0.66  1.3    4.7  18    44
+    unrolled   42   97  525               0.26  0.34   1.2
+              102  335 1609               0.40  0.71   2.6
 
-Compact code is compiled at level 1, in 0.94, 0.71 and 0.72 of the time that level 3 takes. It runs alike and gives the
-same digits.
+So plain code is compiled first where it is compiled as quickly, and compact code in large programs, which take minutes
+to compile better. In extended precision plain code takes 40 to 1100 ms to compile, and runs slower than compact code.
 
-In quadruple precision and beyond, functions do the arithmetic, and all three run alike. The time of a run is
-predicted from these times, by steps and operations, never measured: the choice must not depend on the machine's load.
+In quadruple precision and beyond, functions do the arithmetic, and all run alike. The time of a run is predicted from
+these times, by steps and operations, never measured: the choice must not depend on the machine's load.
 """
 
 from enum import StrEnum
+from itertools import accumulate, pairwise
 from math import log
 
-from ...program.precision import Precision
+from ...program.precision import Precision, read_precision
 
 
 class Code(StrEnum):
     """A kind of compiled code, with heyoka's options."""
 
     QUICK = "quick"
+    PLAIN = "plain"
     COMPACT = "compact"
     UNROLLED = "unrolled"
 
     @property
     def options(self) -> dict[str, object]:
         """The options of heyoka for this code."""
-        return {"compact_mode": self is not Code.UNROLLED, "opt_level": LEVELS[self]}
+        return {"compact_mode": self in (Code.QUICK, Code.COMPACT), "opt_level": LEVELS[self]}
 
 
-LEVELS = {Code.QUICK: 0, Code.COMPACT: 1, Code.UNROLLED: 3}  # of optimisation
-SHARE = {Code.QUICK: 1.0, Code.COMPACT: 0.4, Code.UNROLLED: 0.3}  # of the running time of quick code
+LEVELS = {Code.QUICK: 0, Code.PLAIN: 0, Code.COMPACT: 1, Code.UNROLLED: 3}  # of optimisation
+SHARE = {Code.QUICK: 1.0, Code.PLAIN: 0.26, Code.COMPACT: 0.4, Code.UNROLLED: 0.2}  # of the running time of quick code
+SMALL, LARGE = 40, 250  # operations up to which plain code is compiled at once, and from which compact code is
 REFERENCE, OPERATION = 1e-9, 7.5e-8  # tolerance of a step, and the seconds that it takes for an operation in quick code
+STEP = 2e-7  # seconds that a step takes for everything else
 ORDERS = 1.6  # power of the order that this grows with
 HARDWARE = ("double", "extended")
 
 
-def better_code(code: Code, precision: Precision) -> Code | None:
-    """Return the next better code, if there is one in these numbers.
+def codes_for(operations: int, precision: Precision) -> tuple[Code, ...]:
+    """Return the codes of a program, each better than the one before.
+
+    Parameters
+    ----------
+    operations : int
+        Operations of one evaluation of the accelerations.
+    precision : Precision
+        Numbers of the integrator.
+
+    Returns
+    -------
+    tuple of Code
+        The first is compiled at once.
+    """
+    if precision.name not in HARDWARE:
+        return (Code.QUICK,)
+    if operations > LARGE:
+        return Code.QUICK, Code.COMPACT
+    if precision.name != "double":
+        return Code.QUICK, Code.COMPACT, Code.UNROLLED
+    return (Code.PLAIN, Code.UNROLLED) if operations <= SMALL else (Code.QUICK, Code.PLAIN, Code.UNROLLED)
+
+
+def better_code(code: Code, operations: int, precision: Precision) -> Code | None:
+    """Return the next better code, if there is one.
 
     Parameters
     ----------
     code : Code
         The present code.
+    operations : int
+        Operations of one evaluation of the accelerations.
     precision : Precision
         Numbers of the integrator.
 
@@ -55,9 +90,8 @@ def better_code(code: Code, precision: Precision) -> Code | None:
     -------
     Code or None
     """
-    if code is Code.UNROLLED or precision.name not in HARDWARE:
-        return None
-    return Code.COMPACT if code is Code.QUICK else Code.UNROLLED
+    codes = codes_for(operations, precision)
+    return dict(pairwise(codes)).get(code)
 
 
 def is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
@@ -103,7 +137,32 @@ def running(code: Code, operations: int, steps: float, tol: float) -> float:
     float
         In seconds.
     """
-    return SHARE[code] * steps * OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
+    quick = OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
+    return steps * (STEP + SHARE[code] * quick)
+
+
+def expected_seconds(operations: int, steps: float, tol: float) -> float:
+    """Return the expected time of a run in double precision with worthwhile code.
+
+    Parameters
+    ----------
+    operations : int
+        Operations of one evaluation of the accelerations.
+    steps : float
+        Number of steps.
+    tol : float
+        Tolerance of a step.
+
+    Returns
+    -------
+    float
+        In seconds, without the first compilation.
+    """
+    first, *better = codes_for(operations, read_precision("double"))
+    compiled = accumulate(better, lambda spent, code: spent + compilation(code, operations), initial=0.0)
+    return min(
+        spent + running(code, operations, steps, tol) for spent, code in zip(compiled, (first, *better), strict=True)
+    )
 
 
 def compilation(code: Code, operations: int) -> float:
@@ -112,7 +171,7 @@ def compilation(code: Code, operations: int) -> float:
     Parameters
     ----------
     code : Code
-        ``COMPACT`` or ``UNROLLED``.
+        A better one than ``QUICK``.
     operations : int
         Operations of one evaluation of the accelerations.
 
@@ -121,7 +180,13 @@ def compilation(code: Code, operations: int) -> float:
     float
         In seconds.
     """
-    return 0.05 + (1.1e-3 * operations if code is Code.COMPACT else 5.5e-5 * operations**2)
+    match code:
+        case Code.PLAIN:
+            return 7e-4 * operations
+        case Code.COMPACT:
+            return 0.05 + 1.1e-3 * operations
+        case _:
+            return 0.05 + 5.5e-5 * operations**2
 
 
 def _order(tol: float) -> float:

@@ -26,7 +26,7 @@ from ..constraints.stabilization import equations_of_motion, stabilized_equation
 from ..evaluation import Numbers
 from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
-from .code import Code, better_code, compilation, is_worthwhile, running
+from .code import Code, better_code, codes_for, expected_seconds, is_worthwhile
 from .engine import Block, Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_until
 from .scaled_time import ScaledTime, in_unit, unit_of
@@ -89,7 +89,10 @@ class TaylorEngine(ProgramEngine):
         self._chosen, self._end = compact is not None, end
         self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
         self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
-        code = Code.QUICK if compact is None else Code.COMPACT if compact else Code.UNROLLED
+        if compact is None:
+            code = codes_for(self._program.operations, self.precision)[0]
+        else:
+            code = Code.COMPACT if compact else Code.UNROLLED
         stabilized = stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and problem.multipliers
         self._stabilization, self._decay = stabilization, decay_until(end, problem, numbers) if stabilized else None
         begun, number = time.perf_counter(), self.precision.number
@@ -128,9 +131,7 @@ class TaylorEngine(ProgramEngine):
     @classmethod
     def expected_seconds(cls, steps: int, operations: int, tol: float, dense: bool) -> float:
         """Return the time with worthwhile code (see `Engine.expected_seconds`)."""
-        run = {code: running(code, operations, steps, tol) for code in Code}
-        compact, unrolled = (compilation(code, operations) for code in (Code.COMPACT, Code.UNROLLED))
-        return min(run[Code.QUICK], compact + run[Code.COMPACT], compact + unrolled + run[Code.UNROLLED])
+        return expected_seconds(operations, steps, tol)
 
     def steps_ahead(self, until: Any, trial: int) -> int | None:
         """Estimate the number of steps to a time by the length of the first ones.
@@ -238,7 +239,7 @@ class TaylorEngine(ProgramEngine):
 
         Their number is estimated by the steps so far.
         """
-        better = None if self._chosen else better_code(self.code, self.precision)
+        better = None if self._chosen else better_code(self.code, self._program.operations, self.precision)
         begun, before = self._counted
         if better is None or self.steps == before:
             return

@@ -14,37 +14,41 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
-from holonom.simulation.engines.code import Code, better_code, is_worthwhile, running
+from holonom.simulation.engines.code import Code, codes_for, is_worthwhile, running
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
 
 
 def test_better_code_for_long_runs():
-    """Quick code first; better code is worthwhile for long runs, and in hardware numbers alone."""
-    assert TaylorEngine(problem("pendulum.mac")).code is Code.QUICK
+    """What is compiled quickly first; better code is worthwhile for long runs, and in hardware numbers alone."""
+    assert TaylorEngine(problem("pendulum.mac")).code is Code.PLAIN
+    assert TaylorEngine(problem("pendulum.mac"), precision="extended").code is Code.QUICK
     assert TaylorEngine(problem("pendulum.mac"), compact=True).code is Code.COMPACT
     assert TaylorEngine(problem("pendulum.mac"), compact=False).code is Code.UNROLLED
     long = TaylorEngine(problem("pendulum.mac", "swing_scene"))
-    long.advance(20000.0)
-    assert long.code is not Code.QUICK
+    long.advance(100_000.0)
+    assert long.code is Code.UNROLLED
     second = 1 / running(Code.QUICK, 20, 1, 1e-9)  # steps
     assert not is_worthwhile(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
     assert is_worthwhile(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
     assert not is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
-    assert better_code(Code.QUICK, read_precision("quadruple")) is None
+    double = read_precision("double")
+    assert codes_for(200, double) == (Code.QUICK, Code.PLAIN, Code.UNROLLED)
+    assert codes_for(2000, double) == (Code.QUICK, Code.COMPACT)
+    assert codes_for(20, read_precision("quadruple")) == (Code.QUICK,)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 1e3])
 def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
     """Truth: the same code and the same bits on a machine that is so busy, or so idle, that a clock goes mad."""
     monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
-    swing, wanted = problem("pendulum.mac", "swing_scene"), SimulationRequest(until=Fraction(200), samples=0)
+    swing, wanted = problem("pendulum.mac", "swing_scene"), SimulationRequest(until=Fraction(2000), samples=0)
     truth = simulate(swing, wanted).report
     clock = count()
     monkeypatch.setattr(time, "perf_counter", lambda: seconds * next(clock))
     found = simulate(swing, wanted).report
-    assert found.code == truth.code == Code.COMPACT
+    assert found.code == truth.code == Code.UNROLLED
     assert (found.coordinates, found.steps) == (truth.coordinates, truth.steps)
 
 
@@ -59,7 +63,7 @@ swing : holonomic_scene(system, control_law = [u = table([{points}])], initial_s
   initial_guess = [y = -4/5], time_span = [0, 200])$
 """
     motion = motion_problem(write_scene(scene), Request(), Limits())
-    assert simulate(motion, SimulationRequest(samples=0)).report.code is not Code.QUICK
+    assert simulate(motion, SimulationRequest(samples=0)).report.code is Code.UNROLLED
 
 
 @pytest.mark.parametrize("compact", [None, True, False])
