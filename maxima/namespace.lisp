@@ -80,8 +80,8 @@
 
 (defun private-noun (noun)
   "The noun 'f of a private name."
-  (let* ((name (get noun 'noun)) (private (and (maxima-name-p name) (read-name name))))
-    (if (or (null private) (eq private name))
+  (let* ((name (get noun 'noun)) (private (read-name name)))
+    (if (eq private name)
         noun
         (let ((private ($nounify private)))
           (setf (get private 'reversealias) name)

@@ -15,6 +15,7 @@ WITHOUT = re.compile(
     r"(Add|Sub|Mul|Div|FloorDiv|Mod|Pow)_(RShift|LShift|Bit\w+))$"
 )
 EXCHANGED = {"any": "all", "all": "any", "min": "max", "max": "min", "floor": "ceil", "ceil": "floor"}
+COMMUTATIVE = {"min", "max", "minimum", "maximum", "suppress"}
 NEEDED = ("import_name", "import_from", "pass_stmt", "global_stmt", "nonlocal_stmt", "string")
 
 
@@ -44,7 +45,7 @@ class Arguments(_Ours):
     """Two neighbouring arguments of a call, exchanged."""
 
     def _changes(self, node):
-        if node.type == "arglist":
+        if node.type == "arglist" and node.get_previous_leaf().get_previous_leaf().value not in COMMUTATIVE:
             texts = [child.get_code().strip() for child in node.children[::2]]
             plain = [child.type != "argument" for child in node.children[::2]]
             for i in range(len(texts) - 1):

@@ -52,6 +52,7 @@ def test_statements_of_python_and_the_operators_of_cosmic_ray():
     found = made("py", "    if any(a) and b < 2:\n        f(a, b)\n")
     assert found["Exchange"] == {"    if all(a) and b < 2:\n        f(a, b)\n"}
     assert found["Arguments"] == {"    if any(a) and b < 2:\n        f(b, a)\n"}
+    assert "Arguments" not in made("py", "    f(max(a, b), key=1)\n")
     assert found["Statement"] == {"    if any(a) and b < 2:\n        pass\n"}
     assert found["Condition"] == {f"    if {value}:\n        f(a, b)\n" for value in (True, False)}
     assert "    if any(a) or b < 2:\n        f(a, b)\n" in found["boolean_replacer"]
