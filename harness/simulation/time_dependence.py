@@ -38,6 +38,7 @@ BLOCK = 2**13  # parts that are looked at together
 MUCH = 8  # times shorter than the time span: a part that no step is to pass
 EPSILON = 1e-14  # relative rounding of a time, with a margin
 NEARLY_ALL = 0.99  # of the samples that estimate the rounding of an expression
+SOME, SHORT_TIME = 8, 2.0**-40  # of the samples these are; of the time span, over which they are compared
 ROUNDED, BESIDE_ROUNDING = 32.0, 1e5  # times this rounding: an error that is none; the least size of an expression
 JUMP = 1e-3  # of the largest value: an error larger than rounding
 NOT_SMOOTH = translatable("an expression of the time in the equations of motion is not smooth")
@@ -177,7 +178,7 @@ class _Scan:
             self._ending = self._last, "an expression of the time in the equations of motion has no real, finite value"
             values = function(start + (self._last - start) * cells)
         self._grid = values
-        self._rounding = self._rounding_of(start + (self._last - start) * cells, values)
+        self._rounding = self._rounding_of(start + (self._last - start) * cells[::SOME])
         self._scale = np.maximum(np.max(np.abs(values), axis=1), BESIDE_ROUNDING * self._rounding)
         self._usual = np.partition(np.abs(values), SAMPLES // 2, axis=1)[:, SAMPLES // 2]
         self._bases, self._spans = self._cut()
@@ -196,15 +197,20 @@ class _Scan:
         stops = tuple(float(t) for t in stops if end is None or t < end)
         return TimeDependence(stops, end and float(end), reason, self._unresolved)
 
-    def _rounding_of(self, times: Vector, values: np.ndarray) -> Vector:
+    def _rounding_of(self, times: Vector) -> Vector:
         """Return the rounding errors of each expression, shape (expressions,).
 
-        They are its changes over the least steps of time.
+        They are its third differences over very short times, which smooth functions do not have. The times have all
+        digits: between those of few digits rounding may be the same.
         """
+        at = times + (times[1] - times[0]) / np.pi
+        step = np.pi * max(SHORT_TIME * (self._last - self._start), 16 * np.spacing(np.max(np.abs(at))))
         with np.errstate(all="ignore"):
-            changes = np.abs(self._function(np.nextafter(times, np.inf)) - values)
-        changes[~np.isfinite(changes)] = 0.0
-        return np.quantile(changes, NEARLY_ALL, axis=1)
+            first, second, third, fourth = (self._function(at + place * step) for place in range(4))
+            errors = np.abs(fourth - first + 3 * (second - third)) / 8
+        errors[~np.isfinite(errors)] = 0.0
+        usual = np.quantile(errors, NEARLY_ALL, axis=1)
+        return np.where(usual > 0, usual, np.max(errors, axis=1))
 
     def _cut(self) -> tuple[Vector, Vector]:
         """Return beginnings and lengths of the parts to be halved.

@@ -383,3 +383,31 @@ scene : holonomic_scene(system, initial_state = [x = 0, y = 0, w = 1, dot(x) = 0
         scene.simulate(until=2, samples=2)
     assert float(ended.value.detail.split(",")[0]) == pytest.approx(1, abs=1e-6)
     assert "Painleve" not in ended.value.detail
+
+
+def test_six_blocks_slide_on_each_other():
+    """Truth: block i has friction -i/10 of the weights 10*(7 - i) from below, that of the next one from above."""
+    blocks = range(1, 7)
+
+    def each(term):
+        return ", ".join(term(i) for i in blocks)
+
+    def friction(i):
+        slip = f"dot(x{i})" + (f" - dot(x{i - 1})" if i > 1 else "")
+        direction = [int(place == i) - int(place == i - 1) for place in blocks]
+        return f"f{i} = -{i}*abs(lambda{i})*signum({slip})*{[*direction, *[0] * 6]}/10"
+
+    start = each("x{0} = 0, y{0} = 0, dot(x{0}) = 10*{0}, dot(y{0}) = 0".format)
+    stack = of_text(f"""
+system : holonomic_system(coordinates = [{each("x{}".format)}, {each("y{}".format)}],
+  kinetic_energy = apply("+", map(lambda([v], v^2), [{each("dot(x{0}), dot(y{0})".format)}]))/2,
+  potential_energy = 10*apply("+", [{each("y{}".format)}]), forces = [{each(friction)}],
+  constraints = [y1, {", ".join(f"y{i} - y{i - 1}" for i in blocks[1:])}])$
+scene : holonomic_scene(system, initial_state = [{start}],
+  time_span = [0, 1/2])$
+""")
+    motion = stack.simulate(samples=2)
+    forces = [i * (7 - i) for i in blocks] + [0]
+    accelerations = np.diff(forces)
+    for i, acceleration in zip(blocks, accelerations, strict=True):
+        assert motion[f"x{i}"][-1] == pytest.approx(10 * i / 2 + acceleration / 8, rel=1e-13)

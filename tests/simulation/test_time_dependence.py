@@ -76,6 +76,26 @@ def test_a_pulse_among_faint_oscillations_as_narrow_was_passed_over(faint, often
     assert min(abs(t - 1 / 3) for t in found.stops) < 2 * width
 
 
+def rounded_at(size: int) -> Call:
+    return of(Operation.SUBTRACT, of(Operation.ADD, T, Fraction(size)), Fraction(size))
+
+
+@pytest.mark.parametrize(
+    "zero",
+    [
+        of(Operation.SUBTRACT, rounded_at(64), rounded_at(128)),
+        of(
+            Operation.SUBTRACT,
+            of(Operation.SUBTRACT, of(Operation.MULTIPLY, T, Fraction(3)), T),
+            of(Operation.ADD, T, T),
+        ),
+    ],
+)
+def test_rounding_of_a_zero_is_smooth(zero):
+    """Times of few digits show no rounding, and neither do those next to them."""
+    assert time_dependence(program(of(Operation.MULTIPLY, X, zero)), 0.0, 10.0) == TimeDependence()
+
+
 def test_what_changes_too_often_to_be_resolved_was_given_up_in_silence():
     for often, start in ((10**4, None), (10**6, 0.0)):
         fast = of(Operation.SIN, of(Operation.MULTIPLY, Fraction(often), T))
