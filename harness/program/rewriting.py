@@ -47,6 +47,10 @@ def folded(operation: Operation, arguments: list[Expression]) -> Expression:
             return a
         case Operation.POWER, [Fraction() as a, Fraction(denominator=1) as n] if a or n >= 0:
             return a ** int(n)
+        case Operation.POWER, [Fraction(numerator=0), Fraction() as n] if n > 0:
+            return ZERO
+        case Operation.SQRT, [Fraction(numerator=0)]:
+            return ZERO
         case _:
             return Call(operation, tuple(arguments))
 
@@ -59,10 +63,34 @@ def _collected(operation: Operation, arguments: list[Expression], neutral: Fract
             number = number + argument if operation is Operation.ADD else number * argument
         else:
             rest.append(argument)
+    if operation is Operation.ADD:
+        rest = _without_cancelled(rest)
     if not rest:
         return number
     parts = rest if number == neutral else [number, *rest]
     return parts[0] if len(parts) == 1 else Call(operation, tuple(parts))
+
+
+def _without_cancelled(terms: list[Expression]) -> list[Expression]:
+    """Return the terms of a sum without those that cancel, as of abs(x) + x for negative x."""
+    weighted = list(map(_weighted, terms))
+    if all(weight > 0 for weight, _ in weighted):
+        return terms
+    weights: dict[Expression, Fraction] = {}
+    for weight, part in weighted:
+        weights[part] = weights.get(part, ZERO) + weight
+    return [term for term, (_, part) in zip(terms, weighted, strict=True) if weights[part]]
+
+
+def _weighted(term: Expression) -> tuple[Fraction, Expression]:
+    """Return the number before a term, and the term without it."""
+    match term:
+        case Call(Operation.NEGATE, (part,)):
+            return -ONE, part
+        case Call(Operation.MULTIPLY, (Fraction() as weight, part)):
+            return weight, part
+        case _:
+            return ONE, term
 
 
 def computing(program: Program, wanted: Collection[str]) -> Program:

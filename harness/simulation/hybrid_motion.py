@@ -32,7 +32,8 @@ from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern, sticking
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
-from ..program.sign_pattern import driven, switching_function
+from ..program.sign_pattern import driven, problem_in, switching_function
+from .branch_points import last_step, real_state
 from .constraints.factorization import factored_constraints
 from .control_matrix import controls_may_fail
 from .engines.engine import Step
@@ -267,13 +268,20 @@ class HybridMotion:
             self._switch(pattern, list(changes), t, state, ())
 
     def _steps(self, stop: Any) -> Iterator[Step]:
-        """Yield steps of the mode. An error names the paradox that the motion comes near."""
+        """Yield steps of the mode, the last one to a branch point. An error names the paradox ahead."""
         mode = self.mode
         try:
             yield from mode.integrate(stop)
         except HolonomError as error:
-            if error.kind is ErrorKind.NO_WAY_ON and self._nears_paradox():
+            if error.kind is not ErrorKind.NO_WAY_ON:
+                raise
+            if self._nears_paradox():
                 self._reject(self.time, NOT_UNIQUE)
+            if self._precision.name != "double":
+                raise
+            step = last_step(mode, stop, self._span, self.nominal)
+            if step is not None:
+                yield step
             raise
 
     def _nears_paradox(self) -> bool:
@@ -349,9 +357,11 @@ class HybridMotion:
 
         `left` are the switching surfaces that the motion leaves.
         """
-        before, after = self.mode, self._mode_of(pattern, self._started_at(t, state))
+        before, start = self.mode, self._real_state(pattern, t, state)
+        after = self._mode_of(pattern, self._started_at(t, start))
         state = before.settled(t, state)  # without the drift, which takes no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
+        moved = self._real_state(pattern, t, moved)
         after.engine.restart(t, moved)
         self._left |= dict.fromkeys(left, t)
         self.intervals.append(ModeInterval(t, after))
@@ -368,6 +378,9 @@ class HybridMotion:
             else:
                 outcome = EventOutcome.CROSSED if change <= CONTINUOUS else EventOutcome.IMPULSE
             self.switchings.append(Switching(float(t), self._signs[name].of, outcome))
+
+    def _real_state(self, pattern: Pattern, t: Any, state: Numbers) -> Numbers:
+        return real_state(problem_in(self.problem, pattern), t, state, self.nominal, self._precision)
 
     def _is_decided_by_accelerations(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Return True if the accelerations on both sides decide about a sign that is zero."""

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from refusing import failing
 from scipy.optimize import brentq
+from scipy.special import beta
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -98,6 +99,31 @@ def test_a_force_that_jumps_at_a_place_gave_0_6266(engine):
     report = end_of(pendulum(forces="-20*signum(x), 0"), engine)
     assert report.coordinates["x"] == pytest.approx(0.5961010442662413546, abs=DIGITS[engine])
     assert outcomes(report) == [EventOutcome.CROSSED, EventOutcome.CROSSED]
+
+
+def rebound(stiffness: float, speed: float, time: float) -> float:
+    """Return the place at a time after a contact at x = 1 that begins at half a second."""
+    deepest = (5 * speed**2 / (4 * stiffness)) ** 0.4
+    contact = 2 * deepest / speed * beta(0.4, 0.5) * 0.4
+    return 1 - speed * (time - 0.5 - contact)
+
+
+@pytest.mark.parametrize(
+    "contact",
+    [
+        {"force": "-50*max(0, x - 1)^(3/2)"},
+        {"potential": "20*max(0, x - 1)^(5/2)"},
+        {"force": "if x > 1 then -50*(x - 1)^(3/2) else 0"},
+    ],
+    ids=["force", "potential", "parts"],
+)
+@pytest.mark.parametrize("engine", ENGINES)
+def test_hertz_contact_ended_in_short_steps(contact, engine):
+    problem = mass(**contact, x="0", v="2", end="2")
+    report = end_of(problem, engine)
+    assert [switch.function for switch in report.switchings] == ["x-1", "x-1"]
+    assert report.coordinates["x"] == pytest.approx(rebound(50, 2, 2), abs=10 * DIGITS[engine])
+    assert report.velocities["dot(x)"] == pytest.approx(-2, abs=10 * DIGITS[engine])
 
 
 @pytest.mark.parametrize("engine", ENGINES)

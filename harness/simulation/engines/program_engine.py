@@ -258,7 +258,10 @@ class ProgramEngine:
             return []
         self.steps += 1
         self._longest, self._usual = max(self._longest, self._usual, step), step or self._usual
-        self._obstruction = self._found_ahead(until)
+        try:
+            self._obstruction = self._found_ahead(until)
+        except HolonomError as error:  # of the state behind the step, which may end before
+            self._obstruction = error
         return dense_steps
 
     def _found_ahead(self, until: Any) -> HolonomError | None:
@@ -295,7 +298,9 @@ class ProgramEngine:
         """
         at = self._matrices.independent(float(t), as_floats(state))
         chosen = factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
-        fixed = as_floats(self.solutions(np.array([t]), np.reshape(state, (-1, 1))).accelerations[:, 0])
+        fixed = as_floats(
+            self.solutions(self.precision.numbers([float(t)]), np.reshape(state, (-1, 1))).accelerations[:, 0]
+        )
         error = share_of(fixed - chosen, chosen, self._matrices.nominal.accelerations)
         return float(error) if np.isfinite(error) else np.inf
 

@@ -1,0 +1,106 @@
+"""Modes that end or begin at a branch point, as the contact force k*max(0, x)^(3/2) does at x = 0.
+
+Engines take ever shorter steps before a branch point, and do not reach it. The rest of the time is so short that the
+accelerations are constant to rounding. Behind it, rounding may leave the state on the other side, where the force is
+not real.
+"""
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..program.motion_problem import MotionProblem
+from ..program.precision import Precision
+from .accuracy_check import has_root_of
+from .engines.engine import Step
+from .evaluation import Numbers, as_floats, evaluation_once
+from .inputs import Inputs
+from .nominal import Nominal
+
+if TYPE_CHECKING:
+    from .mode import Mode
+
+REST = 1e-8  # of the time span: how long before a branch point engines give up
+CONSTANT = 1e-13  # of the nominal velocities: changes of the velocities that rounding hides
+DOUBLINGS = 10  # of the smallest change of the time
+
+
+def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step | None:
+    """Return the step from the time of the engine to a switching surface close to it.
+
+    Parameters
+    ----------
+    mode : Mode
+        The mode, whose engine gave up.
+    until : number
+        Last time that is requested.
+    span : float
+        The time span of the motion.
+    nominal : Nominal
+        Nominal sizes of the state.
+
+    Returns
+    -------
+    Step or None
+        None if there is no such surface, or the accelerations change until then.
+    """
+    t, state = mode.engine.time, mode.engine.state.copy()
+    changes = _accelerations(mode, t, state)
+
+    def states(times: Numbers) -> Numbers:
+        since = times - t
+        velocities, accelerations = state[n:, None], changes[:, None]
+        moved = state[:n, None] + since * (velocities + since * accelerations / 2)
+        return np.concatenate([moved, velocities + since * accelerations])
+
+    n = len(changes)
+    step = Step(t, min(until, t + REST * span), states, mode=mode)
+    crossing = mode.switching_functions.first_crossing(step, {})
+    if crossing is None:
+        return None
+    half = (crossing.t - t) / 2
+    later = _accelerations(mode, t + half, states(np.array([t + half]))[:, 0])
+    lost = np.abs(later - changes) * float(crossing.t - t)
+    return step if (lost <= CONSTANT * nominal.velocities).all() else None
+
+
+def real_state(problem: MotionProblem, t: Any, state: Numbers, nominal: Nominal, precision: Precision) -> Numbers:
+    """Return a state in which accelerations are real, moved within rounding.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion of the mode that begins.
+    t : number
+        Time of the state.
+    state : ndarray, shape (2n,)
+        Coordinates, then velocities.
+    nominal : Nominal
+        Nominal sizes of the state.
+    precision : Precision
+        Numbers of the motion.
+
+    Returns
+    -------
+    ndarray, shape (2n,)
+        `state` itself if no such state is found.
+    """
+    if not problem.once("roots", problem.motion, lambda: has_root_of(problem.motion, problem.state)):
+        return state
+    accelerations, inputs = evaluation_once(problem, problem.motion, precision), Inputs(problem, precision)
+    n, least = len(state) // 2, precision.rounding * max(abs(t), precision.number(repr(float(nominal.time))))
+
+    def is_real(later: Any) -> bool:
+        moved = np.concatenate([state[:n] + later * state[n:], state[n:]])
+        return bool(np.isfinite(as_floats(accelerations(inputs(t, moved))[:n])).all())
+
+    later = precision.number("0")
+    for doubling in range(DOUBLINGS):
+        if is_real(later) and is_real(later - least):
+            return np.concatenate([state[:n] + later * state[n:], state[n:]])
+        later = least * 2**doubling
+    return state
+
+
+def _accelerations(mode: "Mode", t: Any, state: Numbers) -> Numbers:
+    return as_floats(mode.engine.solutions(np.array([t]), state[:, None]).accelerations[:, 0])
