@@ -97,3 +97,8 @@ def test_a_singular_pivot_gives_no_finite_number():
     written = program(["a"], [("w", ["Divide", 1, "a"])], {"out": "w"})
     for function in (NumpyFunction(written), compile_c(written), heyoka_function(written)):
         assert function(np.array([0.0]))[0] == math.inf
+
+
+def test_python_source_refused_the_sign_of_a_number_of_numpy():
+    written = program(["a"], [("w", ["Sign", "a"])], {"out": "w"})
+    assert [python_function(written)([np.float64(a)]) for a in (-2.5, 0, 3)] == [[-1], [0], [1]]
