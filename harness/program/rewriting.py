@@ -72,7 +72,7 @@ def _collected(operation: Operation, arguments: list[Expression], neutral: Fract
 
 
 def _without_cancelled(terms: list[Expression]) -> list[Expression]:
-    """Return the terms of a sum without those that cancel, as of abs(x) + x for negative x."""
+    """Return a sum's terms that do not cancel: none of s*x + x for s = -1."""
     weighted = list(map(_weighted, terms))
     if all(weight > 0 for weight, _ in weighted):
         return terms

@@ -268,7 +268,10 @@ class HybridMotion:
             self._switch(pattern, list(changes), t, state, ())
 
     def _steps(self, stop: Any) -> Iterator[Step]:
-        """Yield steps of the mode, the last one to a branch point. An error names the paradox ahead."""
+        """Yield steps of the mode, the last one to a branch point.
+
+        An error names the paradox that the motion comes near.
+        """
         mode = self.mode
         try:
             yield from mode.integrate(stop)
