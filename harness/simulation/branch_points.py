@@ -1,4 +1,4 @@
-"""Modes that end or begin at a branch point, as the contact force k*max(0, x)^(3/2) does at x = 0.
+"""Modes that end or begin at a branch point, as contacts with a force of Hertz do.
 
 Engines take ever shorter steps before a branch point, and do not reach it. The rest of the time is so short that the
 accelerations are constant to rounding. Behind it, rounding may leave the state on the other side, where the force is

@@ -253,7 +253,7 @@ class Sensitivities:
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
             raise no_sensitivity(
                 translatable(
-                    "unknown name %(name)s: expected a parameter or one of %(names)s",
+                    "%(name)s is neither declared in parameters nor one of %(names)s",
                     name=unknown[0],
                     names=", ".join(problem.state),
                 )
