@@ -26,7 +26,7 @@ from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
-from ..matrices import MotionMatrices
+from ..matrices import MotionMatrices, Vector
 from ..nominal import share_of
 from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
@@ -39,6 +39,7 @@ DECAYS_IN_A_RUN = 50.0  # gamma of Baumgarte's and Gear's stabilization, times t
 SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
 LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
+ROUNDED = 16.0  # times what the last bit of the state changes the accelerations by: rounding
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
 NO_SLOPE = translatable("a force has no slope there, so that the motion may not be unique")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
@@ -292,17 +293,23 @@ class ProgramEngine:
         return any(call.operation is Operation.ABS for call in calls_of(self._problem.motion))
 
     def _pivots_lose(self, t: Any, state: Numbers) -> float:
-        """Return the relative error of the program's accelerations.
+        """Return the relative error of the program's accelerations beyond rounding.
 
-        The reference is a solve that chooses its pivots. Accelerations below their nominal sizes may have cancelled.
+        It is their difference from those with pivots that are chosen here. Rounding of the state is in both, more and
+        more as the gradient of a constraint vanishes.
         """
-        at = self._matrices.independent(float(t), as_floats(state))
-        chosen = factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
+        floats, sizes = as_floats(state), self._matrices.nominal.accelerations
+        chosen, moved = (self._with_own_pivots(t, each) for each in (floats, np.nextafter(floats, np.inf)))
         fixed = as_floats(
             self.solutions(self.precision.numbers([float(t)]), np.reshape(state, (-1, 1))).accelerations[:, 0]
         )
-        error = share_of(fixed - chosen, chosen, self._matrices.nominal.accelerations)
-        return float(error) if np.isfinite(error) else np.inf
+        error, rounding = (share_of(each - chosen, chosen, sizes) for each in (fixed, moved))
+        return float(error - ROUNDED * rounding) if np.isfinite([error, rounding]).all() else np.inf
+
+    def _with_own_pivots(self, t: Any, state: Vector) -> Vector:
+        """Return the accelerations with pivots chosen at a state."""
+        at = self._matrices.independent(float(t), state)
+        return factored_constraints(at.mass, at.jacobian).accelerations(at.force, at.curvature)
 
     @property
     def _why_singular(self) -> tuple[Difficulty, str]:
