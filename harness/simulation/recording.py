@@ -3,7 +3,7 @@
 They are processed in blocks, so that any number of samples takes the memory of one block.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain, groupby, islice
 from typing import Any, NamedTuple
 
@@ -29,7 +29,7 @@ class SampleBlock(NamedTuple):
     times: Numbers  # shape (k,)
     states: Numbers  # shape (2n, k)
     works: Numbers  # shape (k,): work done until each time
-    modes: list[Mode]  # of each
+    modes: Sequence[Mode]  # of each
 
     def by_mode(self) -> Iterator[tuple[Mode, Numbers, Numbers]]:
         """Yield runs of consecutive samples in one mode.
@@ -84,10 +84,7 @@ class Recording:
         self._steps = times is None
         self._waiting = iter(times or ())
         self._next = next(self._waiting, None)
-        self._times: list[Any] = []
-        self._states: list[Numbers] = []
-        self._works: list[Any] = []
-        self._modes: list[Mode] = []
+        self._samples: list[tuple[Any, Numbers, Any, Mode]] = []  # times, states, works until then, and modes
         self._intervals: list[Interval] = []  # of one mode, their works not yet known
         self._inside: list[tuple[Numbers, Numbers]] = []  # where the power is needed
         self.work = self._zero = zero
@@ -164,25 +161,21 @@ class Recording:
             Projected coordinates, then velocities.
         """
         self._settle()
-        if self._times and self._times[-1] == time:
-            self._states[-1] = state.copy()
-        else:
-            self._keep(time, state.copy())
+        if self._samples and self._samples[-1][0] == time:
+            self._samples.pop()
+        self._keep(time, state.copy())
 
     def flush(self) -> None:
         """Process the samples since the last call."""
-        if self._times:
-            arrays = np.array(self._times), np.array(self._states).T, np.array(self._works)
-            self._process(SampleBlock(*arrays, self._modes))
-        self._times, self._states, self._works, self._modes = [], [], [], []
+        if self._samples:
+            times, states, works, modes = zip(*self._samples, strict=True)
+            self._process(SampleBlock(np.array(times), np.array(states).T, np.array(works), modes))
+        self._samples = []
 
     def _keep(self, time: Any, state: Numbers) -> None:
-        if len(self._times) == BLOCK:  # the last one stays, for `end` may change it
+        if len(self._samples) == BLOCK:  # the last one stays, for `end` may change it
             self.flush()
-        self._times.append(time)
-        self._states.append(state)
-        self._works.append(self.work)
-        self._modes.append(self.mode)
+        self._samples.append((time, state, self.work, self.mode))
 
     def _wanted_until(self, end: Any) -> Iterator[Any]:
         while self._next is not None and self._next <= end:

@@ -114,7 +114,7 @@ def integrate(
         _require_steps(problem, request)
         parametrized = parametrized_problem(problem, request)
         _require_derivatives(problem, parametrized, request)
-        end, ending = end_of(problem, request)
+        end, ending = _end_of(problem, request)
         with doing("compiling the motion"):
             prepared = _Simulation(parametrized, request, take, end, ending)
         with doing("integrating the motion"), closing(prepared.motion):
@@ -148,27 +148,8 @@ def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
     require_reach(ESTIMATED_AFTER, ESTIMATED_AFTER * step, span)
 
 
-def end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
-    """Return the last time of a motion and the event that sets it.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    request : SimulationRequest
-        Requested end and numbers.
-
-    Returns
-    -------
-    end : number
-    ending : Ending or None
-        None if the scene names no event.
-
-    Raises
-    ------
-    HolonomError
-        As `last_time` and `first_event`.
-    """
+def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
+    """Return the last time of a motion and the event that sets it, None without one."""
     precision = read_precision(str(request.precision))
     end = last_time(problem, request.until, precision)
     if not problem.ends.until:
@@ -337,13 +318,8 @@ class _Simulation:
             and progress is watch is self.sensitivities is None
         ):
             return None
-        takers = [self.recording.take]
-        if self.sensitivities is not None:
-            takers.insert(0, self.sensitivities.take)
-        if self.steps is not None:
-            takers.append(self.steps.take)
-        if watch is not None:
-            takers.append(watch)
+        takers = [each.take for each in (self.sensitivities, self.recording, self.steps) if each is not None]
+        takers += [] if watch is None else [watch]
 
         def take(step: Step) -> None:
             for each in takers:

@@ -115,7 +115,7 @@ class BatchEngine:
         self._along, self._size = len(along), len(problem.state)
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}
-        program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
+        program = computing(problem.motion, problem.accelerations)
         parameters = {name: heyoka.par[place] for place, name in enumerate(problem.parameters)}
         equations = dynamics(program, parameters | zero_multipliers(problem.multipliers, 0.0))
         known = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}, **parameters}
@@ -219,7 +219,8 @@ class BatchEngine:
             failed = np.unique(chosen[failing])
             active[failed] = False
             if not active.any():
-                return self._nothing(len(stops), count)
+                reached = np.full((len(stops), self._behind, count), np.nan)
+                return _Batch(reached, active, [[NO_STEPS] * count])
             chosen[np.isin(chosen, failed)] = np.flatnonzero(active)[0]
 
     def _run(self, starts: Floats, pars: Floats, stops: Stops) -> tuple[NDArray[np.bool_] | None, _Batch | None]:
@@ -253,10 +254,6 @@ class BatchEngine:
             projected, strayed = self._projected(*reached, self._pars[:-1])
             self._moving[:, elements] = (self._sizes * projected)[:, elements]
             well &= ~(elements & strayed)
-
-    def _nothing(self, stops: int, count: int) -> _Batch:
-        reached = np.full((stops, self._behind, count), np.nan)
-        return _Batch(reached, np.zeros(count, dtype=bool), [[NO_STEPS] * count])
 
 
 def _steps_taken(batches: Sequence[Sequence[Block]]) -> tuple[NDArray[np.bool_], Floats, NDArray[np.int64]]:
