@@ -335,6 +335,11 @@ class MotionProblem:
         return (*self.coordinates, *(f"dot({name})" for name in self.coordinates))
 
     @property
+    def accelerations(self) -> tuple[str, ...]:
+        """Names of the accelerations."""
+        return tuple(f"ddot({name})" for name in self.coordinates)
+
+    @property
     def reactions(self) -> tuple[str, ...]:
         """Names of the multipliers that are not zero by being those of servo-constraints."""
         return self.multipliers[: len(self.multipliers) - self.servo.constraints]

@@ -46,7 +46,7 @@ class RightHandSide:
 
     @cached_property
     def _accelerations(self) -> NumpyFunction:
-        program = computing(self.problem.motion, [f"ddot({name})" for name in self.problem.coordinates])
+        program = computing(self.problem.motion, self.problem.accelerations)
         return NumpyFunction(replace(program, inputs=("t", *self.names)))
 
     def __call__(self, t: float, y: ArrayLike) -> NDArray[np.float64]:

@@ -130,29 +130,14 @@ def relative_energy_error(
     float or ndarray, shape (k,)
         Absolute if the energies have no size.
     """
-    scale = np.maximum(np.maximum(energy_scale(*start), energy_scale(*end)), exchanged)
+    scale = np.maximum(np.maximum(_energy_scale(*start), _energy_scale(*end)), exchanged)
     at_rest = np.max(np.diagonal(end[0].mass) * np.transpose(small) ** 2, axis=-1, initial=0.0)
     left = np.maximum(error - at_rest, 0.0)  # NaN stays
     return np.where((scale > 0) & (scale < np.inf), left / scale, left)
 
 
-def energy_scale(at: Matrices, state: Vector) -> float | Vector:
-    """Return the size of the exchanged energies at a state: v^T A v and |h_s q_s|.
-
-    Rounding errors are relative to it.
-
-    Parameters
-    ----------
-    at : Matrices
-        Matrices at the state.
-    state : ndarray, shape (2n,) or (2n, k)
-        Coordinates, then velocities.
-
-    Returns
-    -------
-    float or ndarray, shape (k,)
-        Energy, in the scene's unit.
-    """
+def _energy_scale(at: Matrices, state: Vector) -> float | Vector:
+    """Return the size of the exchanged energies at a state: v^T A v and |h_s q_s|."""
     q, v = np.abs(np.split(state, 2))
     return np.einsum("i...,ij...,j...->...", v, np.abs(at.mass), v) + np.sum(np.abs(at.force) * q, axis=0)
 

@@ -7,8 +7,9 @@ motion, as switching functions are (`zeros.py`). If it changes its sign or touch
 import numpy as np
 
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import names_in
+from ..program.motion_program import names_used
 from ..program.precision import Precision
+from ..program.rewriting import computing
 from .constraints.directions import or_one
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
@@ -32,13 +33,10 @@ def controls_may_fail(problem: MotionProblem) -> bool:
     -------
     bool
     """
-    if problem.servo.matrix is None:
+    matrix = problem.servo.matrix
+    if matrix is None:
         return False
-    known = {*problem.parameters}
-    for name, expression in problem.servo.matrix.assignments:
-        if names_in(expression) <= known:
-            known.add(name)
-    return any(not names_in(value) <= known for value in problem.servo.matrix.outputs.values())
+    return bool(names_used(computing(matrix, matrix.outputs)) & set(matrix.inputs) - set(problem.parameters))
 
 
 class ControlMatrix(SignedFunctions):

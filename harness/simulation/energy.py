@@ -14,7 +14,7 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import names_in, names_used
+from ..program.motion_program import names_used
 from ..program.precision import Precision, read_precision
 from ..program.rewriting import computing
 from .accuracy_check import may_hide
@@ -269,6 +269,4 @@ def _constraints_move(problem: MotionProblem) -> bool:
     if problem.servo.constraints:
         return True
     residuals_alone = {name for name in problem.matrices.outputs if name.startswith("residual[")}
-    program = computing(problem.matrices, residuals_alone)
-    parts = (*(expression for _, expression in program.assignments), *program.outputs.values())
-    return any("t" in names_in(part) for part in parts)
+    return "t" in names_used(computing(problem.matrices, residuals_alone))

@@ -11,9 +11,10 @@ import numpy as np
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program, names_used
 from ..program.precision import Precision
-from .engines.engine import Step
+from .engines.engine import Solutions, Step
 from .evaluation import Numbers, as_floats, evaluation_once
 from .inputs import Inputs
 from .nominal import first_order_changes
@@ -65,39 +66,41 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     span = float(end - motion.time)
     for step in motion.integrate(end):
         if step.mode not in events:
-            problem = step.mode.problem
-            events[step.mode] = Events(
-                problem.ends.until, values_in(step.mode, problem.ends.events, precision), precision, span
-            )
+            problem, solutions = step.mode.problem, step.mode.engine.solutions
+            values = values_in(problem, problem.ends.events, precision, solutions)
+            events[step.mode] = Events(problem.ends.until, values, precision, span)
         found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found
     return None
 
 
-def values_in(mode: "Mode", program: Program, precision: Precision) -> Values:
-    """Return the values of a program's outputs along a mode of a motion.
+def values_in(
+    problem: MotionProblem, program: Program, precision: Precision, solutions: Callable[..., Solutions] | None = None
+) -> Values:
+    """Return the values of a program's outputs along a motion.
 
     Parameters
     ----------
-    mode : Mode
-        The mode.
+    problem : MotionProblem
+        The motion.
     program : Program
-        Expressions of time, state and multipliers.
+        Expressions of time and state, and of multipliers where there are solutions.
     precision : Precision
         Numbers of the motion.
+    solutions : callable or None
+        The solutions of the motion's engine at times and states.
 
     Returns
     -------
     callable
         Takes times, shape (k,), and states, shape (2n, k), to values, shape (outputs, k).
     """
-    problem = mode.problem
     inputs, evaluate = Inputs(problem, precision), evaluation_once(problem, program, precision)
-    solutions = mode.engine.solutions if names_used(program) & set(problem.multipliers) else None
+    solved = solutions if names_used(program) & set(problem.multipliers) else None
 
     def values(times: Numbers, states: Numbers) -> Numbers:
-        multipliers = None if solutions is None else solutions(times, states).multipliers
+        multipliers = None if solved is None else solved(times, states).multipliers
         return np.array([as_floats(row) for row in evaluate(inputs(times, states, multipliers))])
 
     return values

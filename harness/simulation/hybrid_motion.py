@@ -303,7 +303,7 @@ class HybridMotion:
             return None
         if mode not in self._conditions:
             names = [each.of for each in released]
-            conditions = values_in(mode, mode.problem.ends.releases, self._precision)
+            conditions = values_in(mode.problem, mode.problem.ends.releases, self._precision, mode.engine.solutions)
             self._conditions[mode] = Events(names, conditions, self._precision, self._span)
         return self._conditions[mode].first_event(step, self._sides)
 

@@ -41,7 +41,6 @@ from .zeros import SignedFunctions
 
 UNIQUE = "unique"  # name of the switching surfaces on which accelerations cease to be unique
 TOO_OFTEN = translatable("a switching function of the time changes its sign too often to be followed")
-NO_ROUNDING: Mapping[str, float] = {}
 FREE = 1e-12  # of the nominal size of a multiplier: no reaction
 
 
@@ -57,9 +56,9 @@ class SwitchingFunctions(SignedFunctions):
         pattern: Pattern,
         precision: Precision,
         span: float,
-        known: Collection[str] = (),
-        rounding: Mapping[str, float] = NO_ROUNDING,
-        friction: FrictionModes | None = None,
+        known: Collection[str],
+        rounding: Mapping[str, float],
+        friction: FrictionModes | None,
     ) -> None:
         super().__init__(precision, span)
         self._inputs = Inputs(problem, precision)

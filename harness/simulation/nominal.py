@@ -316,7 +316,7 @@ def _from_zero(
     The first iterate has the accelerations of the initial state, the second those along the first.
     """
     weights, lengths = roots[:, None, None], span * WINDOWS[:, None]
-    rates = _Outputs(problem, problem.motion, [f"ddot({name})" for name in problem.coordinates])
+    rates = _Outputs(problem, problem.motion, problem.accelerations)
 
     def largest(numbers: Matrix) -> Matrix:
         """Of all coordinates and times."""

@@ -54,7 +54,7 @@ def require_formats(samples: Path | None, figure: Path | None, film: Path | None
         There is no format of that suffix, or what it needs is not installed.
     """
     if samples is not None:
-        sample_format(samples)
+        _sample_format(samples)
     if figure is not None and figure.suffix not in FIGURES:
         raise _no_such_format(figure, FIGURES)
     if film is not None:
@@ -229,29 +229,13 @@ def sample_file(path: Path, digits: int) -> Iterator[Callable[[Sampled], None]]:
     HolonomError
         There is no such format, or what it needs is not installed, or the file cannot be written.
     """
-    form = sample_format(path)
+    form, text = _sample_format(path), partial(_text, digits=digits)
     with whole_file(path) as file, form(file) as write:
-        yield lambda samples: write({name: np.array(published_list(row, digits)) for name, row in samples.columns()})
+        yield lambda samples: write({name: np.array(written(row, text)) for name, row in samples.columns()})
 
 
-def sample_format(path: Path) -> Format:
-    """Return the function that writes samples into a file.
-
-    Parameters
-    ----------
-    path : Path
-        Name of the file.
-
-    Returns
-    -------
-    callable
-        Takes a binary file to a context manager, which provides a writer of columns by name.
-
-    Raises
-    ------
-    HolonomError
-        There is no format of that suffix, or what it needs is not installed.
-    """
+def _sample_format(path: Path) -> Format:
+    """Return the function that writes samples into a file of this name."""
     if path.suffix not in FORMATS:
         raise _no_such_format(path, FORMATS)
     if path.suffix == ".parquet":
@@ -368,24 +352,6 @@ def report_document(report: Report) -> dict[str, Any]:
 def _document(report: Report, *of_samples: Any) -> dict[str, Any]:
     content = SimulationDocument(report, engine_text(report.segments), tuple(notes(report)), *of_samples)
     return published(Publication.SIMULATION, content, partial(_text, digits=report.digits))
-
-
-def published_list(samples: np.ndarray, digits: int) -> list[float | str]:
-    """Return samples for another program to read.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (k,)
-        Samples of one quantity.
-    digits : int
-        Decimal digits of numbers beyond double precision.
-
-    Returns
-    -------
-    list of float or str
-        Numbers that no double can hold as decimal text.
-    """
-    return written(samples, partial(_text, digits=digits))
 
 
 def _text(number: Any, digits: int) -> str:

@@ -32,10 +32,10 @@ from ..program.sign_pattern import problem_in, switching_function
 from .engines.code import better_code, codes_for, is_worthwhile
 from .engines.engine import Step
 from .engines.taylor import states_of
-from .evaluation import Numbers, as_floats, evaluation_once
+from .evaluation import Numbers
+from .events import values_in
 from .impulses import moves_behind_impulse
 from .initial_tangents import initial_tangents
-from .inputs import Inputs
 from .matrices import start_of
 from .mode import Mode
 from .nominal import Nominal, first_order_changes, nominal_of
@@ -43,6 +43,7 @@ from .recording import SampleBlock
 from .variation import TIME, Variation, no_sensitivity, size_of
 from .variational_equations import VariationalEquations, largest
 
+DOUBLE = read_precision("double")
 BLOCK = 128  # steps of the motion after which X is put back onto the constraints
 # largest distance of the state that X is integrated with from the motion's: relative, and in tolerances
 DISTANCE, TOLERATED = 1e-6, 1e4
@@ -184,7 +185,7 @@ class _ModeVariation:
             Directions behind the others.
         """
         problem, directions = self.problem, (*self._directions, *more)
-        solved = (*problem.multipliers, *(f"ddot({q})" for q in problem.coordinates))
+        solved = (*problem.multipliers, *problem.accelerations)
         moves = np.concatenate([moves, Variation(problem, problem.motion, solved, directions)(times, states, moves)])
         found = dict(zip((*problem.state, *problem.multipliers), moves, strict=False))
         if problem.outputs is None:
@@ -218,7 +219,7 @@ class _ModeVariation:
 
     def _compile_if_worthwhile(self, steps: float) -> None:
         operations = self.variation.program.operations
-        better = better_code(self._code, operations, read_precision("double"))
+        better = better_code(self._code, operations, DOUBLE)
         if better and is_worthwhile(self._code, better, operations, steps, self._integrator.tol):
             self._code = better
             self._integrator = self._compiled()
@@ -434,7 +435,7 @@ class Sensitivities:
         Elsewhere these are zeros.
         """
         zero, *at = _switching_zero(begun, sign.name), *_start_of(begun)
-        value = _values_of(zero.problem, zero.program)
+        value = values_in(zero.problem, zero.program, DOUBLE)
         found = Variation(*zero[:2], (zero.output,), self.directions)(*at, self._moves[:, :, None])[0, :, 0]
         least = ON_SURFACE * first_order_changes(value, *at, nominal_of(begun.whole))[0, 0]
         is_there = begun.pattern[sign.name] == SLIDING or abs(value(*at)[0, 0]) <= least
@@ -455,7 +456,7 @@ def _start_of(begun: Mode) -> tuple[Numbers, Numbers]:
 def _jump_between_sides(begun: Mode, name: str) -> Numbers:
     """Return the jump of the state's rate at a switching surface, shape (2n,)."""
     sides = [problem_in(begun.whole, {**begun.pattern, name: side}) for side in (-1, 1)]
-    one, other = (_values_of(side, side.motion)(*_start_of(begun))[: len(side.coordinates), 0] for side in sides)
+    one, other = (values_in(side, side.motion, DOUBLE)(*_start_of(begun))[: len(side.coordinates), 0] for side in sides)
     jump = one - other if np.max(np.abs(one - other)) > CONTINUOUS * np.max(np.abs([one, other])) else 0.0 * one
     return np.concatenate([np.zeros(len(one)), jump])
 
@@ -465,12 +466,6 @@ def _surface_rate(begun: Mode, sign: Sign, direction: Numbers) -> float:
     zero = _switching_zero(begun, sign.name)
     variation = Variation(*zero[:2], (zero.output,), begun.whole.state[:1])
     return float(variation(*_start_of(begun), direction[:, None, None])[0, 0, 0])
-
-
-def _values_of(problem: MotionProblem, program: Program) -> Callable[[Numbers, Numbers], Numbers]:
-    """Return a program's outputs as a function of times and states."""
-    inputs, evaluate = Inputs(problem), evaluation_once(problem, program, read_precision("double"))
-    return lambda times, states: np.array([as_floats(row) for row in evaluate(inputs(times, states))])
 
 
 def _switching_zero(mode: Mode, name: str) -> _Zero:

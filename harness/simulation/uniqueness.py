@@ -99,7 +99,7 @@ def _outputs_in(
     multipliers = {name: solved.get(name, 0.0) for name in problem.multipliers}
     if problem.outputs is None:
         return multipliers
-    accelerations = np.array([solved[f"ddot({q})"] for q in problem.coordinates])
+    accelerations = np.array([solved[name] for name in problem.accelerations])
     outputs = program_in(problem, problem.outputs, mode.pattern)
     given = inputs(t, state, np.array(list(multipliers.values())), accelerations=accelerations)
     found = as_floats(evaluation(outputs, precision)(given))

@@ -12,7 +12,7 @@ from math import floor, log10
 import numpy as np
 
 from ..failures import ErrorKind, HolonomError
-from ..program.differentiation import Seeds, along, derivative_name, differentiated
+from ..program.differentiation import along, derivative_name, differentiated
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Program
 from ..program.precision import read_precision
@@ -21,29 +21,6 @@ from .evaluation import Evaluation, Numbers, evaluation
 from .inputs import Inputs
 
 TIME = "t"
-
-
-def seeds_of(problem: MotionProblem, directions: Sequence[str], moving: Sequence[str]) -> Seeds:
-    """Return the seeds of `differentiated`.
-
-    Derivatives of `moving` are inputs. The derivative of a direction by itself is known: `size_of` for a parameter, one
-    for the time.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-    directions : sequence of str
-        Parameters, names of the state, and ``t``.
-    moving : sequence of str
-        Names of the state and of what is solved.
-
-    Returns
-    -------
-    Seeds
-    """
-    own = {name: {name: size_of(problem, name)} for name in directions if name not in problem.state}
-    return along(moving, directions) | own
 
 
 def size_of(problem: MotionProblem, name: str) -> Fraction:
@@ -104,11 +81,11 @@ class Variation:
         directions: Sequence[str],
         solved: Sequence[str] = (),
     ) -> None:
-        moving = (*problem.state, *solved)
         self._shape = len(outputs), len(directions)
 
         def build() -> Evaluation:
-            found = differentiated(computing(program, outputs), seeds_of(problem, directions, moving))
+            own = {name: {name: size_of(problem, name)} for name in directions if name not in problem.state}
+            found = differentiated(computing(program, outputs), along((*problem.state, *solved), directions) | own)
             rates = {name: found.outputs[name] for name in (derivative_name(y, k) for y in outputs for k in directions)}
             return evaluation(computing(replace(found, outputs=rates), rates), read_precision("double"))
 

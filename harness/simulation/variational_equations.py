@@ -78,9 +78,8 @@ class VariationalEquations:
         if not names:
             return {}
         problem, units, (t, state) = self.problem, self.units, start_of(self.problem)
-        accelerations = [f"ddot({q})" for q in problem.coordinates]
         times, states = t + units.time * np.abs(PROBES), state[:, None] + np.outer(units.state, PROBES)
-        rates = Variation(problem, problem.motion, accelerations, names)
+        rates = Variation(problem, problem.motion, problem.accelerations, names)
         moves = rates(times, states, np.zeros((len(state), len(names), len(times))))
         moves = np.abs(moves) * (units.time / units.velocities)[:, None, None]
         found = np.max(np.where(np.isfinite(moves), moves, 0.0), axis=(0, 2))
@@ -90,8 +89,7 @@ class VariationalEquations:
         """Return the accelerations and their derivatives, in the fewest operations."""
         own = {name: {name: Name(seed)} for name, seed in self._seeds.items()}
         problem, seeds = self.problem, along(self.problem.state, self.directions) | own
-        accelerations = [f"ddot({q})" for q in problem.coordinates]
-        plain = differentiated(computing(problem.motion, accelerations), seeds)
+        plain = differentiated(computing(problem.motion, problem.accelerations), seeds)
         if problem.response is None:
             return plain
         solved = solution_differentiated(problem.response, problem.matrices, seeds)
@@ -113,10 +111,9 @@ class VariationalEquations:
         variables = {name: given.get(name, heyoka.expression(name)) for name in sizes}
         moving = {name: sizes[name] * variable for name, variable in variables.items()}
         found = heyoka_expressions(self.program, given | moving | seeds)
-        accelerations = [f"ddot({q})" for q in problem.coordinates]
-        rates = [moving[name] for name in problem.state[n:]] + [found[name] for name in accelerations]
+        rates = [moving[name] for name in problem.state[n:]] + [found[name] for name in problem.accelerations]
         rates += [moving[derivative_name(v, k)] for v in problem.state[n:] for k in self.directions]
-        rates += [found[derivative_name(name, k)] for name in accelerations for k in self.directions]
+        rates += [found[derivative_name(name, k)] for name in problem.accelerations for k in self.directions]
         scaled = [(variables[name], rate / sizes[name]) for name, rate in zip(variables, rates, strict=True)]
         return in_unit(scaled, float(self.units.time))
 

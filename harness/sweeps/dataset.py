@@ -233,7 +233,7 @@ class SweepFolder:
             return
         there = read_document(self.path)
         for name, value in self.document.items():
-            if without_places(there.get(name)) != without_places(value):
+            if _compared(there.get(name)) != _compared(value):
                 raise HolonomError(
                     ErrorKind.OTHER_SWEEP,
                     self.path,
@@ -304,18 +304,8 @@ def part_of(table: "pyarrow.Table") -> bytes:
     return buffer.getvalue()
 
 
-def without_places(value: Any) -> Any:
-    """Return an entry of a document without the keys that are not compared.
-
-    Parameters
-    ----------
-    value : object
-        An entry. Anything but a mapping is returned unchanged.
-
-    Returns
-    -------
-    object
-    """
+def _compared(value: Any) -> Any:
+    """Return an entry of a document without the keys that are not compared."""
     return {k: v for k, v in value.items() if k not in UNCOMPARED} if isinstance(value, Mapping) else value
 
 

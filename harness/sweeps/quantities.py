@@ -67,10 +67,9 @@ def solved_names(problem: MotionProblem) -> tuple[str, ...]:
     tuple of str
         Names such as ``ddot(x)``, a multiplier, or ``Lambda[s]`` for the force on coordinate s.
     """
-    accelerations = tuple(f"ddot({name})" for name in problem.coordinates)
     observed = "constraint_forces" in problem.observe
     forces = tuple(f"Lambda[{s}]" for s in range(1, len(problem.coordinates) + 1)) if observed else ()
-    return (*accelerations, *problem.multipliers, *forces)
+    return (*problem.accelerations, *problem.multipliers, *forces)
 
 
 def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:

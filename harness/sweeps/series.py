@@ -48,7 +48,7 @@ def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Float
     """
     series = expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
-    expanded_names = {*(f"ddot({name})" for name in problem.coordinates), *problem.multipliers}
+    expanded_names = {*problem.accelerations, *problem.multipliers}
     constants = (*problem.multipliers, *problem.parameters)
     if is_entire(computing(problem.motion, expanded_names), problem.state, constants):
         return np.where(finite, np.inf, np.nan)
@@ -72,7 +72,7 @@ def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[n
     inputs = named_inputs(problem, t, state, elements, [elements + row for row in values])
     with np.errstate(all="ignore"):
         found = run_program(problem.motion, inputs, COMPLEX)
-        accelerations = np.array([found[f"ddot({name})"] + elements for name in problem.coordinates])
+        accelerations = np.array([found[name] + elements for name in problem.accelerations])
         missed = np.abs(accelerations - paths[2]) <= SATISFIED * (1 + np.abs(paths[2]))
     return missed.all(axis=(0, 1))
 

@@ -89,21 +89,8 @@ def compute(plan: Plan, chunks: Sequence[Chunk], take: Take, workers: int, sched
         _compute_by(client, plan, chunks, take)
 
 
-def make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
-    """Compute the files of chunks in a worker.
-
-    Parameters
-    ----------
-    plan : bytes
-        A plan, pickled.
-    chunks : sequence of Chunk
-        Chunks to compute.
-
-    Returns
-    -------
-    list of bytes
-        Of each chunk's file.
-    """
+def _make_parts(plan: bytes, chunks: Sequence[Chunk]) -> list[bytes]:
+    """Compute the files of chunks in a worker."""
     with one_blas_thread():
         return [part_of(_maker(plan).table(chunk.first, chunk.last)) for chunk in chunks]
 
@@ -150,7 +137,7 @@ def _tasks(chunks: Sequence[Chunk], workers: int) -> Iterator[Sequence[Chunk]]:
 
 
 def _submitted(client: "Client", plan: bytes, chunks: Sequence[Chunk]) -> Any:
-    return client.submit(make_parts, plan, chunks, pure=False)
+    return client.submit(_make_parts, plan, chunks, pure=False)
 
 
 @contextmanager

@@ -17,11 +17,12 @@ from ...program.expense import order_for
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision, read_precision
 from ...program.request import Solve
+from ...program.rewriting import computing
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from .measurement import Prepared, State, doubles, numbers_of
-from .operations import acceleration_program, expansion_operations
+from .operations import expansion_operations
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -132,7 +133,7 @@ def operations_of_a_step(problem: MotionProblem, tol: float) -> int:
     -------
     int
     """
-    return expansion_operations(acceleration_program(problem), order_for(-math.log10(tol)))
+    return expansion_operations(computing(problem.motion, problem.accelerations), order_for(-math.log10(tol)))
 
 
 def state_of(numbers: Precision, values: Any) -> State:
@@ -173,6 +174,6 @@ def prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> 
     Prepared
         The compiled engine, ready to run.
     """
-    motion, operations = RungeKuttaEngine(problem, tol), acceleration_program(problem).operations
+    motion, operations = RungeKuttaEngine(problem, tol), computing(problem.motion, problem.accelerations).operations
     run = Repeated(motion, float(until), lambda: motion.evaluations)
     return Prepared(run, doubles, lambda: run.work * operations)

@@ -12,27 +12,10 @@ Griewank & Walther, Evaluating Derivatives, section 13.2.
 from collections.abc import Set
 from fractions import Fraction
 
-from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Call, Constant, Expression, Name, Operation, Program
-from ...program.rewriting import computing
 
 PAIRED = frozenset({Operation.SIN, Operation.COS, Operation.SINH, Operation.COSH, Operation.TAN, Operation.TANH})
 LINEAR = frozenset({Operation.ADD, Operation.SUBTRACT, Operation.NEGATE, Operation.ABS, Operation.SIGN})
-
-
-def acceleration_program(problem: MotionProblem) -> Program:
-    """Return the part of a motion program that computes the accelerations alone.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-
-    Returns
-    -------
-    Program
-    """
-    return computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
 
 
 def expansion_operations(program: Program, order: int) -> int:

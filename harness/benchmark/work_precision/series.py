@@ -20,13 +20,14 @@ from ...number_texts import number, numbers
 from ...program.motion_problem import MotionProblem
 from ...program.precision import read_precision
 from ...program.request import Request
+from ...program.rewriting import computing
 from ...schema import NumberText
 from ...series.heyoka_series import expand, expanding_integrator
 from ...series.request import EXACT
 from ...source import Source
 from ...structs import entry
 from .measurement import WORKING_DIGITS, BenchmarkCase, Group, Measurement, Prepared, State, relative_error
-from .operations import acceleration_program, expansion_operations
+from .operations import expansion_operations
 
 if TYPE_CHECKING:
     from ...sandbox import Limits
@@ -81,7 +82,7 @@ def expansion_of(problem: MotionProblem, until: Fraction) -> Expansion:
     HolonomError
         The motion cannot be expanded.
     """
-    alone = replace(problem, motion=acceleration_program(problem))
+    alone = replace(problem, motion=computing(problem.motion, problem.accelerations))
     radius = expand(alone, ORDER_OF_RADIUS, read_precision("double")).radius
     step = ENTIRE if radius.estimate is None else INSIDE * radius.estimate
     begin = Fraction(problem.start["t"])

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ...extras import missing_package
 from ...failures import ErrorKind, HolonomError
 from ...program.c_function import compile_c
+from ...program.rewriting import computing
 from .measurement import Prepared, doubles
-from .operations import acceleration_program
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -69,7 +69,7 @@ class RightHandSide:
 
 def _compiled_right_hand_side(problem: MotionProblem) -> RightHandSide:
     """Return the motion program of a problem, compiled by the system's C compiler."""
-    program = acceleration_program(problem)
+    program = computing(problem.motion, problem.accelerations)
     return RightHandSide(compile_c(program).one, len(problem.coordinates), len(program.inputs))
 
 
@@ -130,7 +130,7 @@ def prepare_solver(problem: MotionProblem, until: Fraction, solver: Solver, tol:
     Prepared
         The solver, ready to run.
     """
-    motion, operations = _compiled_right_hand_side(problem), acceleration_program(problem).operations
+    motion, operations = _compiled_right_hand_side(problem), computing(problem.motion, problem.accelerations).operations
     span = float(problem.start["t"]), float(until)
     start = np.array([float(problem.start[name]) for name in problem.state])
 

@@ -106,7 +106,7 @@ class RungeKuttaEngine(ProgramEngine):
         begun = time.perf_counter()
         stabilization = stabilization if problem.multipliers else Stabilization.NONE
         nominal, decay = self._matrices.nominal, decay_until(end, problem, self.precision)
-        self._integrator = DormandPrince(problem, self.tol, stabilization, decay, nominal, max_step or inf)
+        self._integrator = _DormandPrince(problem, self.tol, stabilization, decay, nominal, max_step or inf)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 
@@ -160,7 +160,7 @@ class RungeKuttaEngine(ProgramEngine):
         return self._integrator.evaluations
 
 
-class DormandPrince(ctypes.Structure):
+class _DormandPrince(ctypes.Structure):
     """A Dormand-Prince integrator in double precision, in C for all of its steps.
 
     It is ``struct follower`` of `dormand_prince.c`, and has the part of the interface of heyoka's integrators that
@@ -246,41 +246,13 @@ class DormandPrince(ctypes.Structure):
         return self._evaluations.value
 
     def propagate_until(self, until: float, max_steps: int) -> tuple[bool, float, float, int]:
-        """Take steps to a time, up to a number of steps, or to a failure.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-        max_steps : int
-            Largest number of steps.
-
-        Returns
-        -------
-        (bool, float, float, int)
-            Whether a step has failed, the shortest step of those that are shorter than the one before and the longest
-            one, without one that `until` cut short, and their number.
-        """
+        """Take steps (see `Integrator.propagate_until`)."""
         self._until, self._most = until, max_steps
         failed = self._advance(self._address) != 0
         return failed, self._shortest, self._longest, self._taken
 
     def with_states(self, until: float, most: int) -> tuple[Taken, list[Step]]:
-        """Take steps as `propagate_until` does, each with its states.
-
-        Parameters
-        ----------
-        until : float
-            Last time.
-        most : int
-            Largest number of steps.
-
-        Returns
-        -------
-        taken : tuple
-            Result of `propagate_until`.
-        steps : list of Step
-        """
+        """Take steps as `propagate_until` does, each with its states."""
         times, dense = np.empty(most + 1), np.empty((most, DENSE, len(self.state)))
         self._times, self._dense = times.ctypes.data, dense.ctypes.data
         taken = self.propagate_until(until, most)
@@ -328,7 +300,7 @@ def _source(problem: MotionProblem, stabilization: Stabilization, decay: float) 
     places = range(1, len(problem.coordinates) + 1)
     yield from ("#include <math.h>", "#include <stddef.h>", "#include <string.h>", HELPERS)
     yield f"double open_values[{max(1, len(problem.open_inputs))}];"
-    yield _function(problem, "accelerations", problem.motion, {f"ddot({name})" for name in problem.coordinates})
+    yield _function(problem, "accelerations", problem.motion, problem.accelerations)
     if stabilization is not Stabilization.NONE:
         for kind in ("position", "velocity"):
             outputs = {f"{kind}_correction[{place}]" for place in places}

@@ -88,7 +88,7 @@ class TaylorEngine(ProgramEngine):
             self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
         self._chosen, self._end = compact is not None, end
         self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
-        self._program = computing(problem.motion, {f"ddot({name})" for name in problem.coordinates})
+        self._program = computing(problem.motion, problem.accelerations)
         if compact is None:
             code = codes_for(self._program.operations, self.precision)[0]
         else:
