@@ -206,10 +206,11 @@ class DescribedMotion:
         Returns
         -------
         dict of str to Polynomial
-            The curve, and ``dot(q)`` of each of its coordinates and controls.
+            The curve, ``dot(q)`` of each of its coordinates and controls, and zero multipliers of ended constraints.
         """
         names = (*self.system.coordinates, *self.system.controls)
-        return {**{f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}, **curve}
+        rates = {f"dot({name})": taylor.rate(curve[name]) for name in names if name in curve}
+        return {**dict.fromkeys(self.ended, (mp.zero,)), **rates, **curve}
 
     def equations(
         self, taylor: Taylor, values: Sequence[Polynomial], multipliers: Sequence[Polynomial]

@@ -196,7 +196,6 @@ def values_of_inputs(
                 for name, true in given.items():
                     yield PREMISES, ComparedValue(name, computed[name][0], true[0], abs(true[0]))
             known = motion.parameters() | inputs | motion.with_derivatives(LAW, controls | inputs)
-            known |= dict.fromkeys(motion.ended, (mp.zero,))
             for program, conditions in zip((problem.ends.events, problem.ends.releases), expressions, strict=True):
                 computed = {} if program is None else run(program, inputs)
                 for name, true in conditions.at(STATE, state["t"][0], known).items():

@@ -5,6 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import holonom
 from holonom.crosscheck.motion_program import ScenePrograms, verify_programs
@@ -232,3 +233,53 @@ def test_the_final_state_alone_was_given_with_the_constraint_that_had_ended():
     alone = simulate(scene._derived.motion(Request()), SimulationRequest(samples=FINAL_STATE_ALONE)).report
     assert alone.multipliers == {"lambda1": 0}
     assert not alone.violations
+
+
+def test_a_particle_leaves_a_rough_sphere():
+    """Truth: Newton's second law with the normal force N, integrated to N = 0, then a parabola."""
+    sphere = holonom.system("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [r, phi], parameters = [g, mu],
+  kinetic_energy = (dot(r)^2 + r^2*dot(phi)^2)/2, potential_energy = g*r*cos(phi),
+  forces = [friction = [0, -mu*abs(lambda1)*r*signum(dot(phi))]], constraints = [r - 1])$
+run : holonomic_scene(system, parameter_values = [g = 10, mu = 1/5], released = [lambda1 = lambda1], time_span = [0, 1],
+  initial_state = [r = 1, phi = 1/2, dot(phi) = 1])$
+""")
+
+    def normal_force(t, state):
+        phi, omega = state
+        return 10 * np.cos(phi) - omega**2
+
+    def moved(t, state):
+        phi, omega = state
+        return omega, 10 * np.sin(phi) - normal_force(t, state) / 5
+
+    normal_force.terminal = True
+    truth = solve_ivp(moved, (0, 1), (0.5, 1), "DOP853", events=normal_force, rtol=1e-12, atol=1e-14)
+    left, (phi, omega) = truth.t_events[0][0], truth.y_events[0][0]
+    place, velocity = np.exp(1j * phi), 1j * omega * np.exp(1j * phi)  # upwards is the real axis
+    place += velocity * (1 - left) - 5 * (1 - left) ** 2
+    motion = sphere.simulate(samples=2)
+    assert released(motion) == [(pytest.approx(left, rel=1e-10), "lambda1")]
+    assert motion["r"][-1] * np.exp(1j * motion["phi"][-1]) == pytest.approx(place, rel=1e-10)
+    after = [each for each in sphere.check().verdicts if "; after " in each.name]
+    assert {each.verdict for each in after} == {Verdict.AGREES}
+
+
+def test_a_block_that_is_lifted_from_another_leaves_it_its_friction_on_the_floor():
+    """Truth: weights 10 - 5 t and 20 - 5 t until t = 2, then 0 and 10."""
+    blocks = holonom.system("""
+load("holonom.mac")$
+system : holonomic_system(coordinates = [x1, y1, x2, y2],
+  kinetic_energy = (dot(x1)^2 + dot(y1)^2 + dot(x2)^2 + dot(y2)^2)/2, potential_energy = 10*y1 + 10*y2,
+  forces = [lift = [0, 0, 0, 5*t], floor = [-abs(lambda1)*signum(dot(x1))/10, 0, 0, 0],
+    between = abs(lambda2)*signum(dot(x2) - dot(x1))/5*[1, 0, -1, 0]], constraints = [y1, y2 - y1])$
+run : holonomic_scene(system, released = [lambda2 = lambda2], time_span = [0, 3],
+  initial_state = [x1 = 0, y1 = 0, x2 = 0, y2 = 0, dot(x1) = 10, dot(y1) = 0, dot(x2) = 20, dot(y2) = 0])$
+""")
+    motion = blocks.simulate(samples=2)
+    assert released(motion) == [(pytest.approx(2, rel=1e-12), "lambda2")]
+    assert motion["lambda1"][-1] == pytest.approx(10)
+    assert motion["x1"][-1] == pytest.approx(20 - 8 / 12 + 9 - 1 / 2, rel=1e-12)
+    assert motion["x2"][-1] == pytest.approx(40 - 4 + 8 / 6 + 18, rel=1e-12)
+    assert motion["y2"][-1] == pytest.approx(5 / 6, rel=1e-11)
