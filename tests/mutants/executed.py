@@ -18,7 +18,8 @@ from pathlib import Path
 from copies import Copy, in_copies
 from sources import ROOT, Function, functions, read
 
-APART = {"companion", "faults", "figures", "mutants", "reference", "typeset"}  # tests of what no mutant is drawn from
+APART = {"companion", "figures", "mutants", "reference", "typeset"}  # tests of what no mutant is drawn from,
+APART |= {"test_escapes.py", "test_escapes_of_a_user.py", "test_hostile.py", "test_kills.py"}  # of the sandbox
 APART |= {"test_lisps.py", "test_preloaded.py"}  # and of Maxima without the image, in which functions are defined anew
 QUICK = 0.05  # seconds of a test whose time pytest does not list
 SECONDS = 120.0  # of the tests that are run for a mutant, as measured

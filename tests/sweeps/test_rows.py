@@ -451,5 +451,12 @@ def test_outputs_of_the_scene_are_recorded_in_batches_and_singly(rows_of, scenes
     braked = columns(rows_of(scenes / "braking.mac", "at(F,1/4),min(F)", "mu=1:2:2").table(0, 2))
     assert braked["at(F,1/4)"] == pytest.approx([-1, -2])
     assert braked["min(F)"] == pytest.approx([-1, -2])
+
+
+@pytest.mark.parametrize("item", ["min(side)", "max(side)", "zero(side)"])
+def test_an_output_with_a_corner_is_recorded_at_times_only(item, rows_of, scenes):
+    file = scenes / "cornered.mac"
+    file.write_text(HANGING.replace("[0, 2])", "[0, 2], observe = [trajectory, side = abs(x)])"))
+    rows_of(file, "at(side,1)", "m=1:3:3")
     with failing(ErrorKind.NOT_AN_OUTPUT, "side"):
-        rows_of(file, "max(side)", "m=1:3:3")
+        rows_of(file, item, "m=1:3:3")
