@@ -21,7 +21,7 @@ from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.expense import order_for, require_means
 from ..program.heyoka_function import dynamics, heyoka_expressions, import_heyoka, zero_multipliers
-from ..program.motion_problem import MotionProblem, motion_problem, require_expandable
+from ..program.motion_problem import MotionProblem, motion_problem, require_expandable, require_signs_known
 from ..program.motion_program import Program
 from ..program.precision import GUARD_DIGITS, Precision, read_precision
 from ..program.request import Request
@@ -87,6 +87,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     HolonomError
         heyoka is not installed, or the order is too high, or a coefficient is too large for the numbers.
     """
+    require_signs_known(problem)
     require_means(problem, precision, order)
     integrator = expanding_integrator(problem, order, precision)
     integrator.step(write_tc=True)

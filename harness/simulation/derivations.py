@@ -5,13 +5,13 @@ as a number of masses, changes the derivation. If the equations need a number, s
 derived with the numbers in it.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
 from ..documents import NAME
 from ..failures import ErrorKind, HolonomError
-from ..program.motion_problem import DOUBLE_DIGITS, MotionProblem, motion_problem
+from ..program.motion_problem import DOUBLE_DIGITS, DependsOn, MotionProblem, motion_problem
 from ..program.request import Request
 from ..source import Source
 
@@ -118,9 +118,26 @@ def stands(problem: MotionProblem) -> bool:
 
     begun = at_start(problem)
     function = problem.once("start", begun.motion, lambda: NumpyFunction(begun.motion))
+    inputs, start = Inputs(begun), start_of(begun)
     with np.errstate(all="ignore"):
-        inputs = Inputs(begun)(*start_of(begun), signs=[1.0] * len(begun.signs))
-        return bool(np.isfinite(function(inputs)).all())
+        return bool(np.isfinite(function(inputs(*start, signs=_signs_at(begun, *start)))).all())
+
+
+def _signs_at(problem: MotionProblem, t: float, state: Sequence[float]) -> list[float]:
+    """Return the signs at a state, those of multipliers as positive.
+
+    Each is known after those that its function contains.
+    """
+    from ..program.numpy_function import NumpyFunction
+    from ..program.rewriting import computing
+    from .inputs import Inputs
+
+    signs, inputs = [1.0] * len(problem.signs), Inputs(problem)
+    for place, sign in enumerate(problem.signs):
+        if sign.by is not DependsOn.REACTION:
+            function = NumpyFunction(computing(problem.switching, {f"switch[{place + 1}]"}))
+            signs[place] = -1.0 if function(inputs(t, state, signs=signs))[0] < 0 else 1.0
+    return signs
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:

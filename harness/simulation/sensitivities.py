@@ -254,7 +254,8 @@ class Sensitivities:
         if unknown := [name for name in directions if name not in (*problem.parameters, *problem.state)]:
             raise no_sensitivity(
                 translatable(
-                    "%(name)s is neither declared in parameters nor one of %(names)s",
+                    "%(name)s is none of %(names)s, and no declared parameter, or has a special value, such as a mass "
+                    "of zero",
                     name=unknown[0],
                     names=", ".join(problem.state),
                 )

@@ -371,3 +371,11 @@ def test_derivatives_by_heyoka_are_refused():
     request = SeriesRequest(4, precision="double", sensitivities=("g",))
     with failing(ErrorKind.SERIES_VARIED):
         compute_series(PENDULUM, request, Limits())
+
+
+def test_a_sign_had_no_value(write_scene):
+    scene = write_scene("""load("holonom.mac")$
+      system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = abs(x - 1))$
+      s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 2])$""")
+    with failing(ErrorKind.NOT_ANALYTIC):
+        compute_series(scene, SeriesRequest(4, precision="double"), Limits())

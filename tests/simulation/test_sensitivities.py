@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from scipy.integrate import quad
+from scipy.special import beta
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -458,6 +459,18 @@ def test_a_known_parameter_was_called_unknown(options):
         scene.simulate(sensitivities=["m"], **options)
     assert caught.value.kind is ErrorKind.NO_SENSITIVITY
     assert "unknown" not in caught.value.message()
+
+
+def test_a_parameter_of_a_force_that_begins_later_was_called_unknown():
+    """Truth: a contact with the force of Hertz takes a time in proportion to k^(-2/5)."""
+    body = holonom.system("""system : holonomic_system(coordinates = [x], parameters = [k],
+      kinetic_energy = dot(x)^2/2, forces = [contact = [-k*max(0, x - 1)^(3/2)]])$
+    s : holonomic_scene(system, parameter_values = [k = 50], initial_state = [x = 0, dot(x) = 2], time_span = [0, 2])$
+    """)
+    took = (5 / 50) ** 0.4 * 0.4 * beta(0.4, 0.5)
+    found = body.simulate(samples=2, sensitivities=["k"])
+    assert found["x"][-1] == pytest.approx(1 - 2 * (1.5 - took), rel=1e-12)
+    assert found["d(x, k)"][-1] == pytest.approx(-2 * 0.4 * took / 50, rel=1e-9)
 
 
 def test_derivatives_that_are_zero_satisfy_the_constraints():
