@@ -1,9 +1,11 @@
 """Functions of the time that are affine, against their values at rational times."""
 
+import math
 from fractions import Fraction
 
 import pytest
 
+import holonom
 from holonom.program.motion_program import Name, Program, expression_of
 from holonom.program.request import Solve
 from holonom.simulation.time_events import _affine
@@ -49,3 +51,13 @@ def test_affine_functions_have_their_values(expression, value):
 )
 def test_others_have_no_known_times(expression):
     assert _affine(program(expression)) is None
+
+
+@pytest.mark.parametrize("engine", ["taylor", "runge-kutta", "robust"])
+def test_a_narrow_pulse_after_a_change_of_sign_is_not_passed_over(engine):
+    pushed = holonom.system("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+  forces = [push = [signum(t - 1) + 1000*exp(-(1000*(t - 7))^2)]])$
+pushed : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 10])$""")
+    motion = pushed.simulate(until=10, samples=2, engine=engine)
+    assert motion["dot(x)"][-1] == pytest.approx(-1 + 9 + math.sqrt(math.pi), rel=1e-9)
