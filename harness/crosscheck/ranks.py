@@ -29,7 +29,7 @@ class Elimination:
     def __init__(self, rows: Sequence[Row], right: Sequence[mp.mpf] | None = None) -> None:
         self._pivots: dict[int, tuple[Row, mp.mpf]] = {}
         self._order: dict[int, int] = {}  # place of each pivot among them
-        self._uses = Counter(column for row in rows for column in row)  # in the rows that are still to come
+        self._uses = Counter(column for row in rows for column in row)  # in rows to come, and reduced
         for place, row in enumerate(rows):
             self._uses.subtract(row.keys())
             self._add(row, right[place] if right else mp.zero)
@@ -73,11 +73,13 @@ class Elimination:
         if left:
             pivot = self._pivot(left)
             self._pivots[pivot], self._order[pivot] = (left, right), len(self._order)
+            self._uses.update(left.keys())
 
     def _pivot(self, left: Row) -> int:
         """Return the pivot column among those with large entries.
 
-        The column with the fewest remaining rows keeps these sparse.
+        The column in the fewest rows keeps these sparse. A later row is reduced by a reduced row, and so filled with
+        its entries.
         """
         least = max(map(abs, left.values())) / SPARSE_RATIO
         return min((k for k, value in left.items() if abs(value) >= least), key=lambda k: self._uses[k])
