@@ -42,7 +42,7 @@ def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step |
     Returns
     -------
     Step or None
-        None if there is no such surface, or the accelerations change until then.
+        None if none is close, or the accelerations change until then.
     """
     t, state = mode.engine.time, mode.engine.state.copy()
     changes = _accelerations(mode, t, state)
