@@ -16,7 +16,6 @@ from ..matrices import Matrix, Vector
 
 EPSILON = float(np.finfo(float).eps)
 DEPENDENT = 1e-12  # singular values of the scaled constraints, relative to the largest, that count as rounding
-INVOLVED = 1e-6  # share of a constraint in a vanishing combination that is more than rounding
 NEGATIVE = 1e-12  # masses below zero, relative to the largest, that are more than rounding
 SINGULAR_MASS = 64 * EPSILON  # reciprocal condition number of A, its diagonal one, below which A counts as singular
 
@@ -107,26 +106,6 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     directions = factors[1] @ np.matrix_transpose(rows)
     lengths = or_one(np.sqrt(np.einsum("...sb,...sb->...b", directions, directions)))
     return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths[..., None, :], stiffening)
-
-
-def dependent_constraints(weighted: WeightedConstraints, rank: int) -> tuple[int, ...]:
-    """Return the constraints in vanishing combinations of directions, in order.
-
-    Parameters
-    ----------
-    weighted : WeightedConstraints
-        All g constraints.
-    rank : int
-        Number of independent constraints.
-
-    Returns
-    -------
-    tuple of int
-        Indices, counted from 0.
-    """
-    combinations = np.linalg.svd(weighted.directions)[2][rank:]
-    involved = np.max(np.abs(combinations), axis=0, initial=0.0) > INVOLVED
-    return tuple(int(beta) for beta in np.flatnonzero(involved))
 
 
 def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:

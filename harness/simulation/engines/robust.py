@@ -21,7 +21,7 @@ from scipy.integrate import DOP853, OdeSolver, Radau
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem
-from ..constraints.directions import EPSILON, dependent_constraints, rank_of, weighted_constraints
+from ..constraints.directions import EPSILON, rank_of, weighted_constraints
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
@@ -181,13 +181,6 @@ class RobustEngine:
         chosen, acting = np.zeros_like(multipliers), np.matrix_transpose(jacobian[:, settled])
         chosen[:, settled] = np.matvec(np.linalg.pinv(acting, rtol=EPSILON * max(acting.shape[1:])), forces)
         return chosen
-
-    @property
-    def dependent(self) -> tuple[str, ...]:
-        """Multipliers of the constraints that depend on one another."""
-        at = self.matrices(self.time, self.state)
-        involved = dependent_constraints(weighted_constraints(at.mass, at.jacobian), self.rank)
-        return tuple(self._multipliers[beta] for beta in involved)
 
     # ---- steps ----
 
