@@ -95,23 +95,15 @@ class BatchEngine:
     look : callable
         Makes numbers of these, given step by step: shape (numbers, elements). Motions with one that is infinite have
         not arrived.
-    elements : int or None
-        Of a batch, 2 or more, or None for the number that is fastest.
     """
 
     def __init__(
-        self,
-        problem: MotionProblem,
-        tol: float,
-        projects: bool,
-        along: Sequence[Expression],
-        look: Look,
-        elements: int | None = None,
+        self, problem: MotionProblem, tol: float, projects: bool, along: Sequence[Expression], look: Look
     ) -> None:
         heyoka = import_heyoka()
         self._start, self._nominal = float(problem.start["t"]), nominal_of(problem)
         self._unit = unit_of(problem, self._nominal.time)  # of the integrator's time
-        elements = self._elements = elements or ELEMENTS
+        elements = self._elements = ELEMENTS
         self._along, self._size = len(along), len(problem.state)
         outcome = heyoka.taylor_outcome
         self._unharmed = {outcome.time_limit, outcome.step_limit, outcome.success}

@@ -81,7 +81,6 @@ class Plan:
     tol: float = TOLERANCE  # tolerance of a step
     until: Fraction | None = None  # the last time; None for the end of the scene's time span
     stabilization: Stabilization = Stabilization.PROJECTION  # ``PROJECTION`` or ``NONE``
-    elements: int | None = None  # that are integrated at once; None for the number that is fastest
 
 
 class RowMaker:
@@ -377,7 +376,7 @@ class RowMaker:
 
     def _looking_at(self, along: Sequence[Expression], look: Look) -> BatchEngine:
         projects = self.plan.stabilization is Stabilization.PROJECTION
-        return BatchEngine(self._common, self.plan.tol, projects, along, look, self.plan.elements)
+        return BatchEngine(self._common, self.plan.tol, projects, along, look)
 
     def _values(self, quantities: Sequence[Expression], times: Floats, states: Floats, values: Floats) -> Floats:
         """Return quantities of motions, shape (quantities, k)."""

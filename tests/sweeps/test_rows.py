@@ -172,13 +172,14 @@ def test_a_quantity_that_no_polynomials_resolve_was_recorded_as_if_they_did(rows
 
 
 @pytest.mark.long
-def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of):
+def test_rows_are_the_same_to_the_last_bit_however_they_are_cut(rows_of, monkeypatch):
     asked = ("crane.mac", "final,max(abs(lambda1)),zero(x-s),mean(y)", "m=50:500:7", "c=0:40:11")
     whole = rows_of(*asked).table(0, 77)
-    for elements in (2, 8):
-        maker = rows_of(*asked, elements=elements)
-        assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
     assert rows_of(*asked[:1], "final", *asked[2:]).table(30, 31)["x"][0] == whole["x"][30]
+    for elements in (2, 8):
+        monkeypatch.setattr(batch_engine, "ELEMENTS", elements)
+        maker = rows_of(*asked)
+        assert pa.concat_tables([maker.table(0, 5), maker.table(5, 40), maker.table(40, 77)]).equals(whole)
 
 
 def test_rows_are_the_same_however_little_room_there_is_for_steps_at_first(rows_of, monkeypatch):
@@ -186,8 +187,9 @@ def test_rows_are_the_same_however_little_room_there_is_for_steps_at_first(rows_
     roomy = rows_of(*asked).table(0, 8)
     monkeypatch.setattr(batch_engine, "ROOM", 4)
     monkeypatch.setattr(batch_engine, "TOGETHER", 48)  # batches of 4 steps: 3 of 64
-    for elements in (None, 2):
-        assert rows_of(*asked, elements=elements).table(0, 8).equals(roomy)
+    for elements in (batch_engine.ELEMENTS, 2):
+        monkeypatch.setattr(batch_engine, "ELEMENTS", elements)
+        assert rows_of(*asked).table(0, 8).equals(roomy)
 
 
 def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scenes, monkeypatch):
