@@ -186,7 +186,9 @@ def example_in_si(file: str, scene: str, engine: EngineName) -> Seen:
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize(("file", "scene"), EXAMPLES)
 def test_every_example_is_the_same_in_all_units(file, scene, engine, units):
-    others = SYSTEMS[units]
+    others, by_default = SYSTEMS[units], example_in_si(file, scene, EngineName.AUTO)
+    if engine is EngineName.TAYLOR and by_default.samples and set(by_default.told[0]) == {engine}:
+        pytest.skip("by default, this engine integrates all of the motion")
     known, found = example_in_si(file, scene, engine), seen(in_units(problem(file, scene), others), engine, others)
     assert_same(known, found, (10 if file in DIGIT_LOST else 1) * AGREEMENT)
 
@@ -300,9 +302,10 @@ def test_a_series_is_the_same_in_units_of_atoms():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("units", SYSTEMS)
+@pytest.mark.parametrize("units", ["atoms", "planets"])
 @pytest.mark.parametrize(("file", "scene"), EXAMPLES)
-def test_every_series_is_the_same_in_all_units(file, scene, units):
+def test_every_series_is_the_same_in_small_and_large_units(file, scene, units):
+    """No size decides about a series, whose numbers are of any range: two systems are enough."""
     assert_same_series(file, scene, units)
 
 
