@@ -183,8 +183,8 @@ class FrictionModes:
     def _guards_of_slipping(self, terms: Terms) -> list[Vector]:
         """Return the guards of zeros that depend on each other."""
         along = terms.drives[:, self._unknown.index(self._zeros[0]), 0]
-        points = terms.drives.shape[-1] // len(self._branches)
-        sides = np.reshape([np.repeat(self._sides[name], points) for name in self._reactions], (-1, len(terms.regular)))
+        count = len(terms.regular)
+        sides = np.reshape([self._sides_of(name, count) for name in self._reactions], (-1, count))
         found = []
         for side in (1, -1):
             slipping = dict(zip(self._zeros, side * np.sign(along / along[0]).astype(int), strict=True))
@@ -232,8 +232,7 @@ class FrictionModes:
         for row, sides in zip(given[rows:], self._sides.values(), strict=True):
             row[...] = sides[:, None]
         given = given.reshape(len(given), -1)
-        values = dict(zip(self._outputs, as_floats(self._function(given)), strict=True))
-        k = given.shape[1]
+        values, k = dict(zip(self._outputs, as_floats(self._function(given)), strict=True)), given.shape[1]
 
         def affine(quantity: str, names: Sequence[str], constant: float) -> Numbers:
             outputs = [f"{quantity}[{self._places[name]}]" for name in names]
@@ -259,16 +258,16 @@ class FrictionModes:
                 drive = terms.drives[self._zeros.index(name)]
                 rows.append([*-drive[:-1], drive[-1]])
             else:
-                size = self._sign(name, signs, terms) * terms.sizes[place]
+                known = self._sides_of(name, len(terms.regular)) if name in self._sides else self._pattern.get(name)
+                size = signs.get(name, known) * terms.sizes[place]
                 own = np.arange(len(self._unknown))[:, None] == place
                 rows.append([*(own - size[:-1]), size[-1]])
         equations = np.moveaxis(np.array(rows).reshape(len(rows), len(rows) + 1, -1), -1, 0)
         return equations[:, :, :-1], equations[:, :, -1]
 
-    def _sign(self, name: str, signs: Pattern, terms: Terms) -> int | Vector:
-        if name in self._sides:
-            return np.repeat(self._sides[name], len(terms.regular) // len(self._branches))
-        return signs.get(name, self._pattern.get(name))
+    def _sides_of(self, name: str, count: int) -> Vector:
+        """Return the sign of each branch, at all of its states."""
+        return np.repeat(self._sides[name], count // len(self._branches))
 
     def _solution(self, chosen: Pattern, matrix: Numbers, right: Vector, terms: Sequence[Numbers]) -> Solution | None:
         if not _is_regular(matrix):
