@@ -66,7 +66,7 @@ import sys
 from holonom.cli.group import run
 sys.argv[1:] = {asked}
 run()
-print({{'sympy', 'rich', 'matplotlib', 'scipy.linalg', 'scipy.integrate'}} & sys.modules.keys())
+print({{'sympy', 'matplotlib', 'scipy.linalg', 'scipy.integrate'}} & sys.modules.keys())
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert done.stdout.endswith("}\nset()\n")
