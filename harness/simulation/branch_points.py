@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..program.motion_problem import MotionProblem
 from ..program.precision import Precision
-from .accuracy_check import has_root_of
 from .engines.engine import Step
-from .evaluation import Numbers, as_floats, evaluation_once
-from .inputs import Inputs
+from .evaluation import Numbers, as_floats
+from .events import Values
 from .nominal import Nominal
 
 if TYPE_CHECKING:
@@ -64,13 +62,13 @@ def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step |
     return step if (lost <= CONSTANT * nominal.velocities).all() else None
 
 
-def real_state(problem: MotionProblem, t: Any, state: Numbers, nominal: Nominal, precision: Precision) -> Numbers:
+def real_state(functions: Values, t: Any, state: Numbers, nominal: Nominal, precision: Precision) -> Numbers:
     """Return a state in which accelerations are real, moved within rounding.
 
     Parameters
     ----------
-    problem : MotionProblem
-        The motion of the mode that begins.
+    functions : callable
+        Takes times, shape (k,), and states, shape (2n, k), to n accelerations, and what else is solved.
     t : number
         Time of the state.
     state : ndarray, shape (2n,)
@@ -85,14 +83,11 @@ def real_state(problem: MotionProblem, t: Any, state: Numbers, nominal: Nominal,
     ndarray, shape (2n,)
         `state` itself if no such state is found.
     """
-    if not problem.once("roots", problem.motion, lambda: has_root_of(problem.motion, problem.state)):
-        return state
-    accelerations, inputs = evaluation_once(problem, problem.motion, precision), Inputs(problem, precision)
     n, least = len(state) // 2, precision.rounding * max(abs(t), precision.number(repr(float(nominal.time))))
 
     def is_real(later: Any) -> bool:
         moved = np.concatenate([state[:n] + later * state[n:], state[n:]])
-        return bool(np.isfinite(as_floats(accelerations(inputs(t, moved))[:n])).all())
+        return bool(np.isfinite(as_floats(functions(np.array([t]), moved[:, None])[:n])).all())
 
     later = precision.number("0")
     for doubling in range(DOUBLINGS):

@@ -8,12 +8,16 @@ derived with the numbers in it.
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from ..documents import NAME
 from ..failures import ErrorKind, HolonomError
 from ..program.motion_problem import DOUBLE_DIGITS, DependsOn, MotionProblem, motion_problem
 from ..program.request import Request
 from ..source import Source
+
+if TYPE_CHECKING:
+    from .inputs import Inputs
 
 
 class Derivations:
@@ -120,24 +124,27 @@ def stands(problem: MotionProblem) -> bool:
     function = problem.once("start", begun.motion, lambda: NumpyFunction(begun.motion))
     inputs, start = Inputs(begun), start_of(begun)
     with np.errstate(all="ignore"):
-        return bool(np.isfinite(function(inputs(*start, signs=_signs_at(begun, *start)))).all())
+        return bool(np.isfinite(function(inputs(*start, signs=_signs_at(begun, inputs, *start)))).all())
 
 
-def _signs_at(problem: MotionProblem, t: float, state: Sequence[float]) -> list[float]:
+def _signs_at(problem: MotionProblem, inputs: "Inputs", t: float, state: Sequence[float]) -> list[float]:
     """Return the signs at a state, those of multipliers as positive.
 
     Each is known after those that its function contains.
     """
     from ..program.numpy_function import NumpyFunction
     from ..program.rewriting import computing
-    from .inputs import Inputs
 
-    signs, inputs = [1.0] * len(problem.signs), Inputs(problem)
-    for place, sign in enumerate(problem.signs):
-        if sign.by is not DependsOn.REACTION:
-            function = NumpyFunction(computing(problem.switching, {f"switch[{place + 1}]"}))
-            signs[place] = -1.0 if function(inputs(t, state, signs=signs))[0] < 0 else 1.0
-    return signs
+    def build() -> dict[str, NumpyFunction]:
+        names = [sign.name for sign in problem.signs if sign.by is not DependsOn.REACTION]
+        return {
+            name: NumpyFunction(computing(problem.switching, {f"switch[{problem.places[name]}]"})) for name in names
+        }
+
+    signs = dict.fromkeys(problem.places, 1.0)
+    for name, function in problem.once("start signs", problem.switching, build).items():
+        signs[name] = -1.0 if function(inputs(t, state, signs=[*signs.values()]))[0] < 0 else 1.0
+    return [*signs.values()]
 
 
 def _moved(problem: MotionProblem, settings: Mapping[str, str]) -> MotionProblem | None:

@@ -32,13 +32,14 @@ from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern, sticking
 from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
-from ..program.sign_pattern import driven, problem_in, switching_function
+from ..program.sign_pattern import driven, program_in, switching_function
+from .accuracy_check import has_root_of
 from .branch_points import last_step, real_state
 from .constraints.factorization import factored_constraints
 from .control_matrix import controls_may_fail
 from .engines.engine import Step
 from .engines.fallback import EngineSegment
-from .evaluation import Evaluation, Numbers, as_floats, evaluation
+from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .events import Events, Values, values_in
 from .friction_modes import FrictionModes, modes_that_may_agree
 from .inputs import Inputs
@@ -383,7 +384,16 @@ class HybridMotion:
             self.switchings.append(Switching(float(t), self._signs[name].of, outcome))
 
     def _real_state(self, pattern: Pattern, t: Any, state: Numbers) -> Numbers:
-        return real_state(problem_in(self.problem, pattern), t, state, self.nominal, self._precision)
+        """Return the state, moved to where accelerations of a pattern are real."""
+        what = real_state, frozenset(pattern.items())
+        if what not in self._functions:
+            motion = program_in(self.problem, self.problem.motion, pattern)
+            has_root = has_root_of(motion, self.problem.state)
+            self._functions[what] = evaluation_once(self.problem, motion, self._precision) if has_root else None
+        solved = self._functions[what]
+        if solved is None:
+            return state
+        return real_state(lambda *at: solved(self._inputs(*at)), t, state, self.nominal, self._precision)
 
     def _is_decided_by_accelerations(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Return True if the accelerations on both sides decide about a sign that is zero."""

@@ -104,7 +104,7 @@ class _ModeVariation:
     def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
         self.mode, self.problem, self._directions, self._tol = mode, mode.problem, directions, tol
         self.variation = VariationalEquations(self.problem, directions, mode.matrices)
-        self._code = codes_for(self.variation.program.operations, read_precision("double"))[0]
+        self._code = codes_for(self.variation.program.operations, DOUBLE)[0]
         self._integrator = self._compiled()
 
     def _compiled(self) -> Any:
