@@ -4,17 +4,18 @@ Measured on a pendulum, the crane, and chains with N = 4, 8 and 16: 12, 38, 100,
 of each code is for a tolerance of 1e-9, the second for 1e-15:
 
                milliseconds to compile      microseconds a step
-    quick      12   15   30   43   66       0.98  2.2   11    18    50
-               12   18   22   49   76       2.1   4.6   16    54   110
-    plain       7   14   49   95  239       0.28  0.53   2.6   5.3  19
-               13   24   63  196  714       0.46  1.2    4.1   9.9  77
-    compact    69  155  605  684 1172       0.36  0.73   3.2   8.4  23
-               78  165  385  714 1400       0.66  1.3    4.7  18    44
-    unrolled   42   97  525               0.26  0.34   1.2
-              102  335 1609               0.40  0.71   2.6
+    quick      10   15   19   30   45       0.97  2.1   6.7   15    31
+               11   17   19   29   44       2.1   6.6   16    35    73
+    plain       6   12   23   54  133       0.28  0.53  1.8   4.4   12
+                9   19   53  123  306       0.45  1.2   4.1   9.8   34
+    compact    68  143  340  416  725       0.36  0.69  2.2   5.4   13
+               67  145  346  419  730       0.64  1.3   4.6   11    26
+    unrolled   39   88  322                 0.25  0.33  1.1
+               87  184  888                 0.40  0.69  2.4
 
-So plain code is compiled first where it is compiled as quickly, and compact code in large programs, which take minutes
-to compile better. In extended precision plain code takes 40 to 1100 ms to compile, and runs slower than compact code.
+So plain code is compiled first where it is compiled as quickly, and compact code in large programs, whose unrolled code
+takes long to compile. In extended precision plain code takes 39 to 770 ms to compile, up to 208 operations, and runs
+slower than compact code.
 
 In quadruple precision and beyond, functions do the arithmetic, and all run alike. The time of a run is predicted from
 these times, by steps and operations, never measured: the choice must not depend on the machine's load.
