@@ -274,7 +274,7 @@ def value_of(taylor: Taylor, head: str, x: Sequence[Polynomial]) -> Polynomial:
         case "Sqrt", [a]:
             return taylor.power(a, mp.mpf(1) / 2)
         case "Abs", [a]:
-            return taylor.scale(_sign(a), a) if any(a) else a
+            return taylor.scale(_sign(a), a) if any(a) else a  # zero to this order on both sides
         case "Arctan2", [a, b]:
             return _angle(taylor, a, b)
         case _ if head in OF_THE_TABLE:
