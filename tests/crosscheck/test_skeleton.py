@@ -4,6 +4,7 @@ import dataclasses
 from collections.abc import Callable
 
 import pytest
+import sympy as sp
 
 from holonom.crosscheck import check, lagranges_method
 from holonom.crosscheck.check import check_record
@@ -103,7 +104,7 @@ class TestEquations:
             with_scene(true, derivation=1),
             with_scene(true, effects=part.effects),
             with_scene(true, parameter_values=dict(whole.parameter_values) | {"m": 3}),
-            with_scene(true, control_law={"u": 1}),
+            with_scene(true, control_law={"u": sp.Integer(1)}),
             with_scene(true, span_trees=None),
             with_scene(true, observe=()),
             with_scene(true, given=(*whole.given, "y")),
