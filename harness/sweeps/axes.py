@@ -82,17 +82,7 @@ class Listed:
         return len(self.numbers)
 
     def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the numbers at some places, from zero.
-
-        Parameters
-        ----------
-        places : ndarray of int, shape (k,)
-            Positions of the numbers, from zero.
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
+        """Return the numbers at some places (see `Grid.at`)."""
         return np.array(self.numbers)[places]
 
 
@@ -188,8 +178,10 @@ def read_axes(
         ``NAME=VALUE,VALUE,...``.
     samples : iterable of str
         ``NAME=normal(MEAN,DEVIATION)``, ``NAME=uniform(LEAST,GREATEST)`` or ``NAME=loguniform(LEAST,GREATEST)``.
-    size, seed : int or None
-        As for `make_axes`.
+    size : int or None
+        Size of the sample, which samples need.
+    seed : int or None
+        Seed of the sample. Default: 0.
 
     Returns
     -------
@@ -198,10 +190,11 @@ def read_axes(
     Raises
     ------
     HolonomError
-        One of them is not of its form, or as `make_axes`.
+        One of them is not of its form, a parameter is varied twice or none is, there are too many rows, or size or seed
+        is not such a number.
     """
-    values = [*_read("--grid", _read_grid, grids), *_read("--list", _read_list, lists)]
-    return make_axes(values, [*_read("--sample", _read_sample, samples)], size, seed)
+    values = [*_read("--grid", _grid, grids), *_read("--list", _listed, lists)]
+    return _axes(values, [*_read("--sample", _sample, samples)], size, seed)
 
 
 def _read(option: str, read: Callable[[str], Axis], texts: Iterable[str]) -> Iterator[Axis]:
@@ -230,9 +223,9 @@ def axes_of(
     lists : mapping of str to collection, or None
         Lists of values.
     samples : mapping of str to str, or None
-        Distributions, as for `sample`.
+        Distributions, as for `read_axes`.
     size, seed : int or None
-        As for `make_axes`.
+        As for `read_axes`.
 
     Returns
     -------
@@ -241,12 +234,14 @@ def axes_of(
     Raises
     ------
     HolonomError
-        An argument is not of its form, or as `make_axes`.
+        An argument is not of its form, or as `read_axes`.
     """
-    values = [grid(name, *numbers) for name, numbers in _entries("grid", _is_triple, grids)]
-    values += [listed(name, numbers) for name, numbers in _entries("values", _is_list, lists)]
-    drawn = [sample(name, text) for name, text in _entries("sample", lambda each: isinstance(each, str), samples)]
-    return make_axes(values, drawn, size, seed)
+    values = [_grid(f"{name}={':'.join(map(str, each))}") for name, each in _entries("grid", _is_triple, grids)]
+    values += [_listed(f"{name}={','.join(map(str, each))}") for name, each in _entries("values", _is_list, lists)]
+    drawn = [
+        _sample(f"{name}={text}") for name, text in _entries("sample", lambda each: isinstance(each, str), samples)
+    ]
+    return _axes(values, drawn, size, seed)
 
 
 def _entries(argument: str, well_formed: Callable[[Any], bool], given: Any) -> Iterable[tuple[str, Any]]:
@@ -268,27 +263,8 @@ def _is_triple(given: Any) -> bool:
     return _is_list(given) and len(given) == 3
 
 
-def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
-    """Return the axes of a sweep.
-
-    Parameters
-    ----------
-    values, samples : sequence
-        One for each parameter.
-    size : int or None
-        Size of the sample, which samples need.
-    seed : int or None
-        Seed of the sample. Default: 0.
-
-    Returns
-    -------
-    Axes
-
-    Raises
-    ------
-    HolonomError
-        If a parameter is varied twice or none is, if there are too many rows, or if size or seed is not such a number.
-    """
+def _axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None, seed: int | None) -> Axes:
+    """Return the axes of a sweep, if they go together."""
     for name, given, least in (("size", size, 1), ("seed", seed, 0)):
         if given is not None and not (isinstance(given, Integral) and given >= least):
             detail = translatable(
@@ -311,84 +287,25 @@ def make_axes(values: Sequence[Values], samples: Sequence[Sample], size: int | N
     return axes
 
 
-def grid(name: str, first: Number, last: Number, count: int | str, text: str | None = None) -> Grid:
-    """Return equally spaced numbers.
-
-    Parameters
-    ----------
-    name : str
-        Name of the parameter.
-    first, last : Number
-        First and last number of the grid.
-    count : int or str
-        Number of values, at least 1.
-    text : str or None
-        Option of the command line, for error messages. None to compose it.
-
-    Returns
-    -------
-    Grid
-
-    Raises
-    ------
-    HolonomError
-        As `read_axes`.
-    """
-    text = text or f"{name}={first}:{last}:{count}"
-    if not str(count).isdecimal() or not 1 <= len(str(count)) <= 12 or int(count) < 1:
+def _grid(text: str) -> Grid:
+    name, rest = _named(text)
+    parts = [part.strip() for part in rest.split(":")]
+    if len(parts) != 3:
+        raise _error(translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text))
+    first, last, count = parts
+    if not count.isdecimal() or not 1 <= len(count) <= 12 or int(count) < 1:
         raise _error(translatable("%(text)s: the count is not a positive integer", text=text))
-    return Grid(_required_name(name, text), _number(first, text), _number(last, text), int(count), text)
+    return Grid(name, _number(first, text), _number(last, text), int(count), text)
 
 
-def listed(name: str, numbers: Sequence[Number], text: str | None = None) -> Listed:
-    """Return numbers one after the other.
-
-    Parameters
-    ----------
-    name : str
-        Name of the parameter.
-    numbers : sequence of Number
-        Its values, in order.
-    text : str or None
-        Option of the command line, for error messages. None to compose it.
-
-    Returns
-    -------
-    Listed
-
-    Raises
-    ------
-    HolonomError
-        As `read_axes`.
-    """
-    text = text or f"{name}={','.join(map(str, numbers))}"
-    values = numbers if len(numbers) else [""]
-    return Listed(_required_name(name, text), tuple(_number(number, text) for number in values), text)
+def _listed(text: str) -> Listed:
+    name, rest = _named(text)
+    return Listed(name, tuple(_number(number, text) for number in rest.split(",")), text)
 
 
-def sample(name: str, drawn: str, text: str | None = None) -> Sample:
-    """Return the sample of a distribution with its two numbers.
-
-    Parameters
-    ----------
-    name : str
-        Name of the parameter.
-    drawn : str
-        ``normal(MEAN,DEVIATION)``, ``uniform(LEAST,GREATEST)`` or ``loguniform(LEAST,GREATEST)``.
-    text : str or None
-        Option of the command line, for error messages. None to compose it.
-
-    Returns
-    -------
-    Sample
-
-    Raises
-    ------
-    HolonomError
-        As `read_axes`.
-    """
-    text = text or f"{name}={drawn}"
-    found = DRAWN.fullmatch(drawn.strip())
+def _sample(text: str) -> Sample:
+    name, rest = _named(text)
+    found = DRAWN.fullmatch(rest.strip())
     if found is None or found[1] not in set(Distribution):
         raise _error(
             translatable("%(text)s: expected %(names)s(NUMBER,NUMBER)", text=text, names=", ".join(Distribution))
@@ -400,39 +317,18 @@ def sample(name: str, drawn: str, text: str | None = None) -> Sample:
         raise _error(translatable("%(text)s: the smallest value is not below the largest", text=text))
     if kind is Distribution.LOGUNIFORM and not first > 0:
         raise _error(translatable("%(text)s: loguniform needs positive values", text=text))
-    return Sample(_required_name(name, text), kind, first, second, text)
-
-
-def _read_grid(text: str) -> Grid:
-    name, rest = _named(text)
-    parts = [part.strip() for part in rest.split(":")]
-    if len(parts) != 3:
-        raise _error(translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text))
-    return grid(name, *parts, text)
-
-
-def _read_list(text: str) -> Listed:
-    name, rest = _named(text)
-    return listed(name, rest.split(","), text)
-
-
-def _read_sample(text: str) -> Sample:
-    return sample(*_named(text), text)
+    return Sample(name, kind, first, second, text)
 
 
 def _named(text: str) -> tuple[str, str]:
     name, equals, rest = text.partition("=")
-    return _required_name(name if equals else "", text), rest
-
-
-def _required_name(name: str, text: str) -> str:
-    if not NAME.fullmatch(name.strip()):
+    if not equals or not NAME.fullmatch(name.strip()):
         raise _error(translatable("%(text)s: the name of the parameter is missing", text=text))
-    return name.strip()
+    return name.strip(), rest
 
 
-def _number(given: Number, whole: str) -> float:
-    text = str(given).strip()
+def _number(text: str, whole: str) -> float:
+    text = text.strip()
     if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
         raise _error(translatable("%(whole)s: expected a number, not %(text)s", whole=whole, text=repr(text)))
     try:

@@ -5,7 +5,7 @@ import pytest
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.sweeps.axes import axes_of, listed, read_axes
+from holonom.sweeps.axes import axes_of, read_axes
 
 
 def test_the_last_parameter_varies_fastest():
@@ -69,9 +69,9 @@ def test_axes_that_do_not_go_together_raise(grids, lists, samples, size):
 
 
 def test_values_of_an_array_were_asked_for_their_truth():
-    assert listed("m", np.array([1.0, 2.5])) == listed("m", [1.0, 2.5])
+    assert axes_of(None, {"m": np.array([1.0, 2.5])}, None, None, None) == read_axes([], ["m=1.0,2.5"], [], None, None)
     with failing(ErrorKind.NOT_AN_AXIS):
-        listed("m", np.array([]))
+        axes_of(None, {"m": np.array([])}, None, None, None)
 
 
 @pytest.mark.parametrize(
