@@ -6,8 +6,8 @@ Their zeros are known exactly before a motion begins, so that steps end on them 
 
 from collections.abc import Mapping
 from fractions import Fraction
-from functools import reduce
-from operator import add
+from math import inf, nan, prod
+from operator import neg, sub
 from typing import NamedTuple
 
 from ..program.arithmetic import Arithmetic, run_program
@@ -15,6 +15,35 @@ from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Constant, Operation, Program, names_used
 from ..program.rewriting import computing
 from ..program.sign_pattern import program_with_values
+
+# Degrees of polynomials in the time, infinite where an expression is none
+DEGREE = Arithmetic(
+    number=lambda _: 0,
+    constants=dict.fromkeys(Constant, 0),
+    power=lambda base, exponent: base * exponent if exponent.denominator == 1 and exponent > 0 else base and inf,
+    operations=dict.fromkeys(Operation, lambda *degrees: inf if any(degrees) else 0)
+    | {
+        Operation.ADD: lambda *degrees: max(degrees),
+        Operation.SUBTRACT: max,
+        Operation.NEGATE: lambda degree: degree,
+        Operation.MULTIPLY: lambda *degrees: sum(degrees),
+        Operation.DIVIDE: lambda above, below: inf if below else above,
+    },
+)
+# Rational numbers, nan where an expression may be none
+RATIONAL = Arithmetic(
+    number=Fraction,
+    constants=dict.fromkeys(Constant, nan),
+    power=lambda *_: nan,
+    operations=dict.fromkeys(Operation, lambda *_: nan)
+    | {
+        Operation.ADD: lambda *terms: sum(terms),
+        Operation.SUBTRACT: sub,
+        Operation.NEGATE: neg,
+        Operation.MULTIPLY: lambda *factors: prod(factors),
+        Operation.DIVIDE: lambda above, below: above / below if below else nan,
+    },
+)
 
 
 class TimeEvent(NamedTuple):
@@ -24,15 +53,11 @@ class TimeEvent(NamedTuple):
     to: int  # the function's sign from then on; before, it is the opposite
 
 
-class Affine(NamedTuple):
+class _Affine(NamedTuple):
     """a + b t."""
 
     a: Fraction
     b: Fraction
-
-
-class _Otherwise(ArithmeticError):
-    """The function is of another form."""
 
 
 def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
@@ -57,66 +82,10 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
     return found
 
 
-def _affine(program: Program) -> Affine | None:
+def _affine(program: Program) -> _Affine | None:
     """Return the one output of a program as an affine function of t, or None."""
     if names_used(program) & set(program.inputs) - {"t"}:
         return None
-    try:
-        (value,) = run_program(program, {"t": Affine(Fraction(0), Fraction(1))}, AFFINE).values()
-    except _Otherwise:
-        return None
-    return value
-
-
-def _constant(value: Fraction) -> Affine:
-    return Affine(value, Fraction(0))
-
-
-def _plus(*terms: Affine) -> Affine:
-    return Affine(*(reduce(add, parts) for parts in zip(*terms, strict=True)))
-
-
-def _scaled(factor: Fraction, function: Affine) -> Affine:
-    return Affine(factor * function.a, factor * function.b)
-
-
-def _product(first: Affine, *others: Affine) -> Affine:
-    return reduce(_times, others, first)
-
-
-def _times(first: Affine, second: Affine) -> Affine:
-    if second.b and first.b:
-        raise _Otherwise
-    return _scaled(second.a, first) if not second.b else _scaled(first.a, second)
-
-
-def _quotient(first: Affine, second: Affine) -> Affine:
-    if second.b or not second.a:
-        raise _Otherwise
-    return _scaled(1 / second.a, first)
-
-
-def _refused(*_: Affine | Fraction) -> Affine:
-    raise _Otherwise
-
-
-class _NoConstants(dict):
-    """Mapping that rejects the constants pi and e, which are not fractions."""
-
-    def __missing__(self, constant: Constant) -> Affine:
-        raise _Otherwise
-
-
-AFFINE = Arithmetic(
-    number=_constant,
-    constants=_NoConstants(),
-    power=_refused,
-    operations=dict.fromkeys(Operation, _refused)
-    | {
-        Operation.ADD: _plus,
-        Operation.SUBTRACT: lambda a, b: _plus(a, _scaled(Fraction(-1), b)),
-        Operation.NEGATE: lambda a: _scaled(Fraction(-1), a),
-        Operation.MULTIPLY: _product,
-        Operation.DIVIDE: _quotient,
-    },
-)
+    (degree,) = run_program(program, {"t": 1}, DEGREE).values()
+    begun, later = (value for t in (0, 1) for value in run_program(program, {"t": Fraction(t)}, RATIONAL).values())
+    return _Affine(begun, later - begun) if degree <= 1 and isinstance(later - begun, Fraction) else None

@@ -8,17 +8,17 @@ degree in the time have no localized features, so they are not examined.
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Call, Expression, Name, Operation, names_in
+from ..program.motion_program import names_in
 from ..program.rewriting import with_numbers
 from ..simulation.constraints.singularity import laws_of, zeros_of_controls
 from ..simulation.initial_state import with_values
 from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence
+from ..simulation.time_events import DEGREE
 
 LOW = 2  # degree in the time up to which a polynomial rises or falls all over a time span as it does at its beginning
 
@@ -89,38 +89,15 @@ def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
 
     Functions of time and parameters alone count.
     """
-    known: dict[str, tuple[float, frozenset[str]]] = {"t": (1, frozenset())}
-    known |= {name: (0, frozenset({name})) for name in problem.parameters}
+    known = {"t": 1} | dict.fromkeys(problem.parameters, 0)  # degrees of these functions
+    within: dict[str, set[str]] = {"t": set()} | {name: {name} for name in problem.parameters}  # their parameters
     degrees, involved = [0.0], set()
     for name, expression in problem.matrices.assignments:
         for part in largest_parts(expression, known.keys()):
-            degree = _degree(part, known)
-            if degree:
+            if degree := DEGREE.value(part, known):
                 degrees.append(degree)
-                involved |= _parameters_in(part, known)
+                involved.update(*(within[each] for each in names_in(part)))
         if names_in(expression) <= known.keys():
-            known[name] = _degree(expression, known), _parameters_in(expression, known)
+            known[name] = DEGREE.value(expression, known)
+            within[name] = set().union(*(within[each] for each in names_in(expression)))
     return degrees, tuple(name for name in problem.parameters if name in involved)
-
-
-def _parameters_in(expression: Expression, known: Mapping[str, tuple[float, frozenset[str]]]) -> frozenset[str]:
-    return frozenset().union(*(known[each][1] for each in names_in(expression)))
-
-
-def _degree(expression: Expression, known: Mapping[str, tuple[float, frozenset[str]]]) -> float:
-    """Degree of a polynomial in the time, infinite where it is none."""
-    match expression:
-        case Name(text):
-            return known[text][0]
-        case Call(Operation.ADD | Operation.SUBTRACT | Operation.NEGATE, arguments):
-            return max(_degree(argument, known) for argument in arguments)
-        case Call(Operation.MULTIPLY, arguments):
-            return sum(_degree(argument, known) for argument in arguments)
-        case Call(Operation.POWER, (base, Fraction(denominator=1) as exponent)) if exponent >= 0:
-            return _degree(base, known) * int(exponent)
-        case Call(Operation.DIVIDE, (above, below)) if _degree(below, known) == 0:
-            return _degree(above, known)
-        case Call(_, arguments):
-            return inf if any(_degree(argument, known) for argument in arguments) else 0
-        case _:
-            return 0
