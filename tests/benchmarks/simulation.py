@@ -30,6 +30,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.program.timing import Batch, python_batch
 from holonom.sandbox import Limits
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.program_engine import ProgramEngine
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import TaylorEngine
@@ -89,7 +90,7 @@ def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Set
         settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, TOLERANCES)
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
-    for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, RungeKuttaEngine, TOLERANCES)):
+    for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, in_c, TOLERANCES)):
         for name, stabilization in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
             prepare = partial(holonom, motion, problem, partial(set_up, stabilization=stabilization))
             settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
@@ -98,7 +99,12 @@ def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Set
 
 def unrolled(problem: MotionProblem, tolerance: float, stabilization: Stabilization) -> TaylorEngine:
     """The Taylor engine, its code unrolled, which is heyoka's own default."""
-    return TaylorEngine(problem, tolerance, stabilization=stabilization, compact=False)
+    return TaylorEngine(Task.of(problem, tol=tolerance, stabilization=stabilization, compact=False))
+
+
+def in_c(problem: MotionProblem, tolerance: float, stabilization: Stabilization) -> RungeKuttaEngine:
+    """The Runge-Kutta engine."""
+    return RungeKuttaEngine(Task.of(problem, tol=tolerance, stabilization=stabilization))
 
 
 def holonom(

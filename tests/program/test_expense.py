@@ -18,6 +18,7 @@ from holonom.program.precision import GUARD_DIGITS, read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.series.heyoka_series import continue_motion, expand
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.simulate import integrate, simulate
@@ -33,7 +34,7 @@ def pendulum() -> MotionProblem:
 
 @pytest.mark.parametrize("digits", [30, 250])
 def test_the_order_is_that_of_heyokas_steps(pendulum, digits):
-    engine = TaylorEngine(pendulum, None, read_precision(str(digits)))
+    engine = TaylorEngine(Task.of(pendulum, precision=digits))
     assert order_for(digits + GUARD_DIGITS) == pytest.approx(engine._integrator.order, abs=1)
 
 

@@ -11,6 +11,7 @@ from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.energy import EnergyBalance
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.matrices import Matrices, MotionMatrices
 from holonom.simulation.nominal import Nominal
@@ -25,7 +26,7 @@ def balance_of(motion: RobustEngine, asked) -> EnergyBalance:
 
 def simulated(asked, until: float):
     """Energy gained and work done along a motion."""
-    motion = RobustEngine(asked, 1e-12)
+    motion = RobustEngine(Task.of(asked, tol=1e-12))
     balance = balance_of(motion, asked)
     start = balance.energy(np.array([motion.time]), motion.state[:, None])[0]
     starts, ends, between = [], [], []
@@ -100,7 +101,7 @@ def test_where_nothing_does_work_the_energy_stays():
 
 def test_damping_takes_its_power():
     paper = problem("paper/paper.mac", "free_motion_scene")
-    balance = balance_of(RobustEngine(paper), paper)
+    balance = balance_of(RobustEngine(Task.of(paper)), paper)
     state = np.array([1.0, 2.0, 0.9, 0.5, -1 / 3, 0.95])
     # conservative forces are in Q here, too: Q.v = -(q1 + q2) v1 - 2 (v1 + v2) v2, and no reaction along a free motion
     expected = -3 * 0.5 - 2 * (0.5 - 1 / 3) * (-1 / 3)

@@ -17,6 +17,7 @@ from holonom.program.sign_pattern import with_values_in
 from holonom.sandbox import Limits
 from holonom.simulation import derivations
 from holonom.simulation.engines import taylor
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.initial_state import InitialStates, at_values, initial_states_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -79,10 +80,10 @@ def test_motions_of_two_values_do_not_share_their_state(problem):
     values = [{name: Fraction(text) for name, text in each.items()} for each in numbers]
     alone = []
     for each in values:
-        engine = taylor.TaylorEngine(at_values(problem, each))
+        engine = taylor.TaylorEngine(Task.of(at_values(problem, each)))
         engine.advance(1.0)
         alone.append(engine.state.copy())
-    both = [taylor.TaylorEngine(at_values(problem, each)) for each in values]
+    both = [taylor.TaylorEngine(Task.of(at_values(problem, each))) for each in values]
     for engine in both:
         engine.advance(1.0)
     assert [engine.state.tolist() for engine in both] == [state.tolist() for state in alone]

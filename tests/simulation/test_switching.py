@@ -26,6 +26,7 @@ from holonom.program.numpy_function import NumpyFunction
 from holonom.program.request import Request
 from holonom.program.sign_pattern import drawing_at_any_time
 from holonom.sandbox import Limits
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.hybrid_motion import CROWD, CROWDED, EventOutcome, HybridMotion
 from holonom.simulation.request import EngineName, SimulationRequest
@@ -364,7 +365,7 @@ def test_no_step_is_longer_than_asked_for(engine, precision):
 
 def test_a_motion_of_one_analytic_part_ends_with_its_time():
     with pytest.raises(HolonomError) as refused:
-        TaylorEngine(pendulum(potential=" + 20*abs(x)"))
+        TaylorEngine(Task.of(pendulum(potential=" + 20*abs(x)")))
     assert (refused.value.kind, refused.value.detail) == (ErrorKind.NOT_ANALYTIC, "x")
 
 

@@ -21,14 +21,11 @@ class ToyEngine:
     name, fixed_pivots, open_parameters = "toy", True, True
     code, compile_seconds, near_singularity, tol = "", 0.0, False, 1e-8
 
-    def __init__(self, problem, precision):
+    def __init__(self, task):
+        problem = task.problem
         self.time, self.state = start_of(problem)
         self.steps, self._n, self._g = 0, len(problem.coordinates), len(problem.multipliers)
-        self._inputs, self._solve = Inputs(problem), evaluation_once(problem, problem.motion, precision)
-
-    @classmethod
-    def for_motion(cls, task):
-        return cls(task.problem, task.precision)
+        self._inputs, self._solve = Inputs(problem), evaluation_once(problem, problem.motion, task.precision)
 
     @classmethod
     def comparable(cls, tol):

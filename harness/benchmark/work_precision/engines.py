@@ -18,6 +18,7 @@ from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision, read_precision
 from ...program.request import Solve
 from ...program.rewriting import computing
+from ...simulation.engines.engine import Engine, Task
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
@@ -26,8 +27,6 @@ from .operations import expansion_operations
 
 if TYPE_CHECKING:
     from fractions import Fraction
-
-    from ...simulation.engines.engine import Engine
 
 LARGEST_UNROLLED = 130  # operations of a motion program whose fastest code compiles in about a second
 HARDWARE = ("double", "extended")  # numbers for which the way of compiling matters
@@ -94,7 +93,8 @@ def prepare_taylor(
         The compiled engine, ready to run.
     """
     numbers = read_precision(precision)
-    motion = TaylorEngine(problem, tol, numbers, stabilization, compact=_compact(problem, precision))
+    asked = {"precision": precision, "tol": tol, "stabilization": stabilization}
+    motion = TaylorEngine(Task.of(problem, **asked, compact=_compact(problem, precision)))
     run = Repeated(motion, numbers.ratio(until), lambda: motion.steps)
     return Prepared(run, partial(state_of, numbers), lambda: run.work * operations_of_a_step(problem, motion.tol))
 
@@ -174,6 +174,7 @@ def prepare_runge_kutta(problem: MotionProblem, until: Fraction, tol: float) -> 
     Prepared
         The compiled engine, ready to run.
     """
-    motion, operations = RungeKuttaEngine(problem, tol), computing(problem.motion, problem.accelerations).operations
+    motion = RungeKuttaEngine(Task.of(problem, tol=tol))
+    operations = computing(problem.motion, problem.accelerations).operations
     run = Repeated(motion, float(until), lambda: motion.evaluations)
     return Prepared(run, doubles, lambda: run.work * operations)

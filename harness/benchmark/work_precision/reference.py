@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...program.expense import order_for
 from ...program.precision import read_precision
+from ...simulation.engines.engine import Task
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...structs import entry
@@ -88,7 +89,8 @@ def find_reference(problem: "MotionProblem", times: Sequence[Fraction], digits: 
 
 def _states(problem: "MotionProblem", times: Sequence[Fraction], digits: int) -> dict[Fraction, State]:
     numbers, states = read_precision(str(digits)), {}
-    motion = TaylorEngine(problem, 10.0**-digits, numbers, Stabilization.NONE)
+    asked = {"precision": digits, "tol": 10.0**-digits, "stabilization": Stabilization.NONE}
+    motion = TaylorEngine(Task.of(problem, **asked))
     for time in times:
         motion.advance(numbers.ratio(time))
         states[time] = state_of(numbers, motion.state)

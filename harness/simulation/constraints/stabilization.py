@@ -45,14 +45,16 @@ def equations_of_motion(problem: MotionProblem, program: Program, precision: Pre
     return dynamics(program, heyoka_inputs(problem, precision.number("0")), precision.ratio)
 
 
-def stabilized_equations(
-    problem: MotionProblem, program: Program, precision: Precision, stabilization: Stabilization, decay: float
+def stabilized(
+    equations: Equations, problem: MotionProblem, precision: Precision, stabilization: Stabilization, decay: float
 ) -> Equations:
-    """Return the first-order equations with Baumgarte's or the GGL stabilization.
+    """Return equations of motion with the terms of a stabilization.
 
     Parameters
     ----------
-    problem, program, precision
+    equations : list of (expression, expression)
+        As `equations_of_motion` returns them.
+    problem, precision : MotionProblem, Precision
         As for `equations_of_motion`.
     stabilization : Stabilization
         ``BAUMGARTE`` or ``GGL``.
@@ -62,7 +64,6 @@ def stabilized_equations(
     Returns
     -------
     list of (expression, expression)
-        As `equations_of_motion`.
     """
     gamma = import_heyoka().expression(precision.ratio(Fraction(decay)))
     two = import_heyoka().expression(precision.ratio(Fraction(2)))
@@ -75,5 +76,4 @@ def stabilized_equations(
         terms = [import_heyoka().expression(precision.number("0"))] * n + pull
     else:
         terms = [gamma * d for d in (*position, *velocity)]
-    plain = equations_of_motion(problem, program, precision)
-    return [(variable, rate + term) for (variable, rate), term in zip(plain, terms, strict=True)]
+    return [(variable, rate + term) for (variable, rate), term in zip(equations, terms, strict=True)]

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem
-from ...program.precision import Precision
+from ...program.precision import Precision, read_precision
 from ..evaluation import Numbers
 from ..hard_cases import Difficulty
 from ..matrices import MotionMatrices
@@ -108,12 +108,41 @@ class Task(NamedTuple):
     problem: MotionProblem
     request: SimulationRequest
     precision: Precision
-    end: Any  # the last time
+    end: Any  # the last time, or None for the next one that it reaches
     matrices: MotionMatrices  # of the same motion
+
+    @classmethod
+    def of(cls, problem: MotionProblem, **asked: Any) -> "Task":
+        """Return the task of a motion whose end is not known.
+
+        Parameters
+        ----------
+        problem : MotionProblem
+            The motion.
+        **asked : object
+            Fields of `SimulationRequest`.
+
+        Returns
+        -------
+        Task
+        """
+        request = SimulationRequest(**asked)
+        return cls(problem, request, read_precision(str(request.precision)), None, MotionMatrices(problem))
 
 
 class Engine(Protocol):
-    """The interface of an engine."""
+    """The interface of an engine.
+
+    Parameters
+    ----------
+    task : Task
+        The motion, the request and the numbers.
+
+    Raises
+    ------
+    HolonomError
+        The engine does not support the request.
+    """
 
     name: EngineName
     # fixed_pivots, open_parameters: whether it takes the motion program's pivots, and parameters without their values
@@ -127,24 +156,7 @@ class Engine(Protocol):
     compile_seconds: float
     near_singularity: bool  # whether a singular configuration is so near that only this engine can continue
 
-    @classmethod
-    def for_motion(cls, task: Task) -> "Engine":
-        """Return the engine of a motion.
-
-        Parameters
-        ----------
-        task : Task
-            The motion, the request and the numbers.
-
-        Returns
-        -------
-        Engine
-
-        Raises
-        ------
-        HolonomError
-            The engine does not support the request.
-        """
+    def __init__(self, task: Task) -> None: ...
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:

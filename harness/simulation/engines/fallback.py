@@ -144,7 +144,7 @@ class FallbackEngine:
             )
         if obstruction is not None and engine_class(chosen).fixed_pivots:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
-        first = engine_class(chosen).for_motion(self._task)
+        first = engine_class(chosen)(self._task)
         weighs = self._automatic and obstruction is None and request.compact is None and self._in_doubles
         steps = first.steps_ahead(self._task.end, TRIAL) if weighs and dense is not None else None
         if steps is None or not any(other.comparable(request.tol) for other in compared_engines()[1:]):
@@ -153,7 +153,7 @@ class FallbackEngine:
         if self.choice.engine == DEFAULT:
             return first
         try:
-            return engine_class(self.choice.engine).for_motion(self._task)
+            return engine_class(self.choice.engine)(self._task)
         except HolonomError as refusal:
             if refusal.kind not in UNCOMPILED:
                 raise
@@ -163,9 +163,9 @@ class FallbackEngine:
     def _fallback(self) -> Engine:
         """Return the engine that continues if the first one fails."""
         if self._second is None:
-            problem, request, _, _, matrices = self._task
-            tol = FINE if request.tol is None else request.tol
-            self._second = engine_class(FALLBACK)(problem, tol, matrices, request.max_step)
+            kind, request = engine_class(FALLBACK), self._task.request
+            tol = FINE if request.tol is None else max(request.tol, kind.finest)
+            self._second = kind(self._task._replace(request=replace(request, tol=tol)))
         return self._second
 
     @property

@@ -17,20 +17,19 @@ import numpy as np
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from ...program.motion_problem import MotionProblem, require_signs_known
+from ...program.motion_problem import require_signs_known
 from ...program.motion_program import Operation, calls_of
-from ...program.precision import Precision
 from ..accuracy_check import has_root_of
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls, no_gradient
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
-from ..matrices import MotionMatrices, Vector
+from ..matrices import Vector
 from ..nominal import share_of
 from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
-from .engine import Obstruction, Solutions, Step, require_reach
+from .engine import Obstruction, Solutions, Step, Task, require_reach
 
 FIRST_BLOCK = 128  # steps; what surrounds a block, projection above all, takes as long as some small steps
 WATCHED = 32  # steps behind an obstruction
@@ -90,10 +89,9 @@ class ProgramEngine:
 
     Parameters
     ----------
+    task : Task
     failed : object
         The outcome of the integrator's steps where the last one led to no numbers.
-    matrices : MotionMatrices or None
-        Of the same motion. None to make them.
     """
 
     name: EngineName
@@ -106,13 +104,11 @@ class ProgramEngine:
     _bound: Mapping[str, Any] = {}
     _first_block = FIRST_BLOCK
 
-    def __init__(
-        self, problem: MotionProblem, precision: Precision, failed: object, matrices: MotionMatrices | None
-    ) -> None:
-        require_signs_known(problem)
-        self.precision, self._failed = precision, failed
+    def __init__(self, task: Task, failed: object) -> None:
+        require_signs_known(task.problem)
+        self.precision, self._failed, self._end = task.precision, failed, task.end
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
-        self._problem, self._known_matrices = problem, matrices
+        self._problem, self._matrices = task.problem, task.matrices
         self._obstruction: HolonomError | None = None
         self._behind_obstruction = False
         self._evaluate: Evaluation | None = None
@@ -132,9 +128,16 @@ class ProgramEngine:
         """The monitor of the constraints if steps shrink."""
         return Watch(self._problem, self._matrices)
 
-    @cached_property
-    def _matrices(self) -> MotionMatrices:
-        return self._known_matrices or MotionMatrices(self._problem)
+    @property
+    def decay(self) -> float:
+        """Decay gamma of the stabilization, by the length of the motion.
+
+        It is that of the scene's time span if the motion has no end, one if the scene gives none.
+        """
+        if self._end is None:
+            first, last = map(float, self._problem.time_span or (0, 1))
+            return DECAYS_IN_A_RUN / (last - first)
+        return DECAYS_IN_A_RUN / float(self._end - self.precision.number(self._problem.start["t"]))
 
     def restart(self, time_point: Any, state: Numbers) -> None:
         """Continue from another time and state (see `Engine.restart`)."""
@@ -337,27 +340,3 @@ class ProgramEngine:
     def _go_back(self, time_point: Any, state: Numbers) -> None:
         self._integrator.time = time_point
         self.state[:] = state
-
-
-def decay_until(end: Any, problem: MotionProblem, precision: Precision) -> float:
-    """Return the rate gamma of the Baumgarte and GGL stabilization until a time.
-
-    Parameters
-    ----------
-    end : number or None
-        Last time of the motion, in the numbers of the precision, or None for the end of the scene's time span, whose
-        length is one if the scene gives none.
-    problem : MotionProblem
-        The motion, which gives the first time.
-    precision : Precision
-        Numbers of the motion.
-
-    Returns
-    -------
-    float
-        Per unit of time.
-    """
-    if end is None:
-        first, last = map(float, problem.time_span or (0, 1))
-        return DECAYS_IN_A_RUN / (last - first)
-    return DECAYS_IN_A_RUN / float(end - precision.number(problem.start["t"]))

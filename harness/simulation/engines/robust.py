@@ -11,7 +11,6 @@ Equations II, section IV.2). If steps stay at the boundary of its stability, Rad
 stable for stiff motions.
 """
 
-import time
 from collections.abc import Iterator
 from functools import cache
 
@@ -20,12 +19,11 @@ from scipy.integrate import DOP853, OdeSolver, Radau
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from ...program.motion_problem import MotionProblem
 from ..constraints.directions import EPSILON, rank_of, weighted_constraints
 from ..constraints.factorization import factored_constraints
 from ..constraints.projection import InconsistentConstraints, settle
 from ..constraints.singularity import extrapolated_zero, least_of, probed, singular_values_at
-from ..matrices import Matrices, Matrix, MotionMatrices, Vector, start_of
+from ..matrices import Matrices, Matrix, Vector, start_of
 from ..place_and_reason import SHORT_STEPS, place_and_reason
 from ..request import EngineName
 from .collocation import NODES, Collocation, collocated
@@ -59,12 +57,7 @@ class RobustEngine:
 
     Parameters
     ----------
-    tol : float or None
-        Tolerance of a step, relative, and absolute in terms of nominal sizes.
-    matrices : MotionMatrices or None
-        Of the same motion. None to make them.
-    max_step : float or None
-        Largest step.
+    task : Task
 
     Attributes
     ----------
@@ -75,41 +68,28 @@ class RobustEngine:
     """
 
     name, fixed_pivots, open_parameters = EngineName.ROBUST, False, True
-    code = ""
+    code, compile_seconds, finest = "", 0.0, TIGHTEST
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        tol: float | None = None,
-        matrices: MotionMatrices | None = None,
-        max_step: float | None = None,
-    ) -> None:
-        clock = time.perf_counter()
-        self.matrices = matrices or MotionMatrices(problem)
-        self.compile_seconds = time.perf_counter() - clock
-        self.n, self.steps, self.tol = len(problem.coordinates), 0, max(tol or TOLERANCE, TIGHTEST)
-        self._max_step = max_step or np.inf
+    def __init__(self, task: Task) -> None:
+        problem, request, precision, _, self.matrices = task
+        if precision.name != "double":
+            raise HolonomError(
+                ErrorKind.ROBUST_IS_DOUBLE, detail=problem.obstruction or translatable("--engine asks for it")
+            )
+        self.tol = TOLERANCE if request.tol is None else request.tol
+        if not TIGHTEST <= self.tol < 1:
+            holds = translatable(
+                "the robust engine holds tolerances from %(finest)s to 1, not %(tol)s",
+                finest=f"{TIGHTEST:.1e}",
+                tol=f"{self.tol:g}",
+            )
+            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
+        self.n, self.steps = len(problem.coordinates), 0
+        self._max_step = request.max_step or np.inf
         self.stiff, self._at_boundary = False, 0  # the steps at the boundary of stability, one after the other
         self._multipliers, self._independent = problem.multipliers, problem.independent
         self._collocations: list[Collocation] = []
         self.restart(*start_of(problem))
-
-    @classmethod
-    def for_motion(cls, task: Task) -> "RobustEngine":
-        """Return the engine in double precision (see `Engine.for_motion`)."""
-        tol = task.request.tol
-        if task.precision.name != "double":
-            raise HolonomError(
-                ErrorKind.ROBUST_IS_DOUBLE, detail=task.problem.obstruction or translatable("--engine asks for it")
-            )
-        if tol is not None and not TIGHTEST <= tol < 1:
-            holds = translatable(
-                "the robust engine holds tolerances from %(finest)s to 1, not %(tol)s",
-                finest=f"{TIGHTEST:.1e}",
-                tol=f"{tol:g}",
-            )
-            raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
-        return cls(task.problem, tol, task.matrices, task.request.max_step)
 
     def restart(self, time_point: float, state: Vector) -> None:
         """Continue from another time and state (see `Engine.restart`)."""

@@ -25,16 +25,14 @@ from ...program.c_function import has_compiler, load_c, unload
 from ...program.c_source import HELPERS, scalar_statements
 from ...program.motion_problem import MotionProblem
 from ...program.motion_program import Program
-from ...program.precision import read_precision
 from ...program.rewriting import computing
 from ...program.sign_pattern import with_values_in
 from ..inputs import named_inputs
-from ..matrices import MotionMatrices
 from ..nominal import Nominal
 from ..request import EngineName, Stabilization
 from .code import REFERENCE
 from .engine import Block, Step, Task
-from .program_engine import SHRUNK, ProgramEngine, Taken, decay_until
+from .program_engine import SHRUNK, ProgramEngine, Taken
 
 FINEST, USUAL = 1e-14, 1e-12  # tolerances; below the first, rounding decides about the steps
 # seconds a step takes for an operation, in all its stages, and for everything else
@@ -67,15 +65,7 @@ class RungeKuttaEngine(ProgramEngine):
 
     Parameters
     ----------
-    tol : float or None
-        Tolerance of a step, relative, and absolute in terms of nominal sizes, or None for `USUAL`.
-    stabilization : Stabilization
-    matrices : MotionMatrices or None
-        Of the same motion. None to make them.
-    end : float or None
-        The last time of the motion, as for `TaylorEngine`.
-    max_step : float or None
-        Largest step.
+    task : Task
 
     Raises
     ------
@@ -85,38 +75,26 @@ class RungeKuttaEngine(ProgramEngine):
 
     name, fixed_pivots, open_parameters = EngineName.RUNGE_KUTTA, True, False
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        tol: float | None = None,
-        stabilization: Stabilization = Stabilization.PROJECTION,
-        matrices: MotionMatrices | None = None,
-        end: float | None = None,
-        max_step: float | None = None,
-    ) -> None:
-        super().__init__(problem, read_precision("double"), True, matrices)
-        if tol is not None and not FINEST <= tol < 1:
+    def __init__(self, task: Task) -> None:
+        request = task.request
+        if task.precision.name != "double":
+            raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=task.precision.name)
+        super().__init__(task._replace(problem=with_values_in(task.problem)), True)
+        self.tol = USUAL if request.tol is None else request.tol
+        if not FINEST <= self.tol < 1:
             holds = translatable(
                 "the Runge-Kutta engine holds tolerances from %(finest)s to 1, not %(tol)s",
                 finest=f"{FINEST:g}",
-                tol=f"{tol:g}",
+                tol=f"{self.tol:g}",
             )
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
-        self.tol = USUAL if tol is None else tol
-        begun = time.perf_counter()
-        stabilization = stabilization if problem.multipliers else Stabilization.NONE
-        nominal, decay = self._matrices.nominal, decay_until(end, problem, self.precision)
-        self._integrator = _DormandPrince(problem, self.tol, stabilization, decay, nominal, max_step or inf)
+        begun, problem = time.perf_counter(), self._problem
+        stabilization = request.stabilization if problem.multipliers else Stabilization.NONE
+        self._integrator = _DormandPrince(
+            problem, self.tol, stabilization, self.decay, self._matrices.nominal, request.max_step or inf
+        )
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
-
-    @classmethod
-    def for_motion(cls, task: Task) -> "RungeKuttaEngine":
-        """Return the engine in double precision (see `Engine.for_motion`)."""
-        problem, request, precision, end, matrices = task
-        if precision.name != "double":
-            raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=precision.name)
-        return cls(with_values_in(problem), request.tol, request.stabilization, matrices, end, request.max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:

@@ -17,18 +17,16 @@ from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.expense import HIGH_ORDER, order_for, require_means
 from ...program.heyoka_function import import_heyoka
-from ...program.motion_problem import MotionProblem
-from ...program.precision import GUARD_DIGITS, Precision, read_precision
+from ...program.precision import GUARD_DIGITS, Precision
 from ...program.rewriting import computing
 from ...program.sign_pattern import at_start
 from ..constraints.program_projection import ProgramProjection
-from ..constraints.stabilization import equations_of_motion, stabilized_equations
+from ..constraints.stabilization import equations_of_motion, stabilized
 from ..evaluation import Numbers
-from ..matrices import MotionMatrices
 from ..request import EngineName, Stabilization
 from .code import Code, better_code, codes_for, expected_seconds, is_worthwhile
 from .engine import Block, Step, Task
-from .program_engine import FIRST_BLOCK, ProgramEngine, Taken, decay_until
+from .program_engine import FIRST_BLOCK, ProgramEngine, Taken
 from .scaled_time import ScaledTime, in_unit, unit_of
 
 DRIFT = 100  # times what rounding does to a number: how far a state may leave the constraints inside a block
@@ -44,63 +42,43 @@ class TaylorEngine(ProgramEngine):
 
     Parameters
     ----------
-    tol : float or None
-        Tolerance of a step, or None for the precision of the numbers.
-    compact : bool or None
-        Whether to compile in compact mode. None to begin with code that is quickly compiled, and to compile better
-        code when what is left of a run earns that back.
-    matrices : MotionMatrices or None
-        Of the same motion. None to make them.
-    end : number or None
-        The last time of the motion, or None for the next one that it reaches. `decay_until` takes it, too.
-    max_step : float or None
-        Largest step.
+    task : Task
+        Its request may ask for compact mode or against it, by ``compact``. None is to begin with code that is quickly
+        compiled, and to compile better code when what is left of a run earns that back.
 
     Raises
     ------
     HolonomError
-        The precision is none, or cannot hold the tolerance, or heyoka is not installed.
+        The precision cannot hold the tolerance, or an expansion exceeds the memory, or heyoka is not installed.
     """
 
     name, fixed_pivots, open_parameters = EngineName.TAYLOR, True, True
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        tol: float | None = None,
-        precision: Precision | str = "double",
-        stabilization: Stabilization = Stabilization.PROJECTION,
-        compact: bool | None = None,
-        matrices: MotionMatrices | None = None,
-        end: Any = None,
-        max_step: float | None = None,
-    ) -> None:
-        numbers = read_precision(precision) if isinstance(precision, str) else precision
-        super().__init__(problem, numbers, import_heyoka().taylor_outcome.err_nf_state, matrices)
-        self._tolerance = (
-            {} if tol is None else {"tol": self.precision.number(repr(checked_tolerance(tol, self.precision)))}
-        )
-        nominal = self._matrices.nominal
-        self._unit = unit_of(problem, nominal.time) if numbers.name == "double" else numbers.number("1")
+    def __init__(self, task: Task) -> None:
+        super().__init__(task, import_heyoka().taylor_outcome.err_nf_state)
+        problem, request, precision, _, matrices = task
+        number, tol = precision.number, request.tol
+        digits = precision.digits + GUARD_DIGITS if tol is None else -log10(checked_tolerance(tol, precision))
+        require_means(at_start(problem), precision, order_for(digits))
+        self._tolerance = {} if tol is None else {"tol": number(repr(tol))}
+        nominal = matrices.nominal
+        self._unit = unit_of(problem, nominal.time) if precision.name == "double" else number("1")
         self._finer = nominal.in_unit(float(self._unit)).absolute()
         if self._finer < 1:
-            whole = self._tolerance.get("tol", self.precision.rounding)
-            self._tolerance["tol"] = whole * self.precision.number(repr(self._finer))
-        self._chosen, self._end = compact is not None, end
-        self._bound = {} if max_step is None else {"max_delta_t": self.precision.number(repr(max_step))}
+            self._tolerance["tol"] = self._tolerance.get("tol", precision.rounding) * number(repr(self._finer))
+        self._chosen = request.compact is not None
+        self._bound = {} if request.max_step is None else {"max_delta_t": number(repr(request.max_step))}
         self._program = computing(problem.motion, problem.accelerations)
-        if compact is None:
-            code = codes_for(self._program.operations, self.precision)[0]
-        else:
-            code = Code.COMPACT if compact else Code.UNROLLED
-        stabilized = stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL) and problem.multipliers
-        self._stabilization, self._decay = stabilization, decay_until(end, problem, numbers) if stabilized else None
-        begun, number = time.perf_counter(), self.precision.number
+        code = Code.COMPACT if request.compact else Code.UNROLLED
+        if not self._chosen:
+            code = codes_for(self._program.operations, precision)[0]
+        self._stabilization = request.stabilization if problem.multipliers else Stabilization.NONE
+        begun = time.perf_counter()
         start = np.array([number(problem.start[name]) for name in problem.state])
         self._counted = number(problem.start["t"]), 0  # since this time, and the steps until then
         self._set_up(code, self._counted[0], start)
-        projects = stabilization is Stabilization.PROJECTION and problem.multipliers
-        self._keeper = ProgramProjection(problem, self.precision) if projects else None
+        projects = self._stabilization is Stabilization.PROJECTION
+        self._keeper = ProgramProjection(problem, precision) if projects else None
         self.compile_seconds = time.perf_counter() - begun
         self.tol = float(self._integrator.tol) / self._finer
         longest = FINE_BLOCK if self.tol <= FINE else FIRST_BLOCK
@@ -109,19 +87,6 @@ class TaylorEngine(ProgramEngine):
         if self._integrator.order > HIGH_ORDER:  # one step is long enough to report
             self._first_block = self._longest_block = 1
         self._allowed = max(DRIFT * 10.0**-self.precision.sure_digits, self.tol)
-
-    @classmethod
-    def for_motion(cls, task: Task) -> "TaylorEngine":
-        """Return the engine in any precision (see `Engine.for_motion`)."""
-        problem, request, precision, end, matrices = task
-        digits = (
-            precision.digits + GUARD_DIGITS
-            if request.tol is None
-            else -log10(checked_tolerance(request.tol, precision))
-        )
-        require_means(at_start(problem), precision, order_for(digits))
-        compact, max_step = request.compact, request.max_step
-        return cls(problem, request.tol, precision, request.stabilization, compact, matrices, end, max_step)
 
     @classmethod
     def comparable(cls, tol: float | None) -> bool:
@@ -250,10 +215,15 @@ class TaylorEngine(ProgramEngine):
             self._set_up(better, self.time, self.state)
             self.compile_seconds += time.perf_counter() - begun
 
+    @property
+    def _pulls(self) -> bool:
+        """True if terms in the equations pull the state to the constraints."""
+        return self._stabilization in (Stabilization.BAUMGARTE, Stabilization.GGL)
+
     def _set_up(self, code: Code, time_point: Any, state: Numbers) -> None:
         self.code = code
-        stabilized = self._stabilization, self._decay
-        kind = ("taylor", code, *stabilized, self.precision.name, float(self._unit), *self._tolerance.values())
+        numbers = self.precision.name, float(self._unit), *self._tolerance.values()
+        kind = "taylor", code, self._stabilization, self.decay if self._pulls else None, *numbers
         built = self._problem.once(kind, self._problem.motion, lambda: self._compiled(code, state))
         built = copy(built) if self._problem.open_inputs else built
         self._integrator = built if self._unit == 1 else ScaledTime(built, self._unit)
@@ -263,11 +233,9 @@ class TaylorEngine(ProgramEngine):
         self.state = self._integrator.state  # a view: what the integrator does shows in it
 
     def _compiled(self, code: Code, state: Numbers) -> Any:
-        asked = self._problem, self._program, self.precision
-        if self._decay is None:
-            equations = equations_of_motion(*asked)
-        else:
-            equations = stabilized_equations(*asked, self._stabilization, self._decay)
+        equations = equations_of_motion(self._problem, self._program, self.precision)
+        if self._pulls:
+            equations = stabilized(equations, self._problem, self.precision, self._stabilization, self.decay)
         if self._unit != 1:
             velocities = [variable for variable, _ in equations[len(state) // 2 :]]
             equations = in_unit(equations, self._unit, velocities)

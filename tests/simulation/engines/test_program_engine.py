@@ -11,10 +11,10 @@ from refusing import failing
 import holonom
 from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
-from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.engines.program_engine import DECAYS_IN_A_RUN, FIRST_BLOCK, Obstruction, decay_until
+from holonom.simulation.engines.engine import Task
+from holonom.simulation.engines.program_engine import DECAYS_IN_A_RUN, FIRST_BLOCK, Obstruction
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
 from holonom.simulation.hard_cases import Difficulty
@@ -37,7 +37,7 @@ def engine(request):
 
 
 def test_it_goes_on_from_where_it_is(engine):
-    at_once, in_parts = (engine(problem("chain.mac")) for _ in range(2))
+    at_once, in_parts = (engine(Task.of(problem("chain.mac"))) for _ in range(2))
     at_once.advance(2.0)
     for time in np.linspace(0.1, 2, 20):
         in_parts.advance(time)
@@ -46,7 +46,7 @@ def test_it_goes_on_from_where_it_is(engine):
 
 
 def test_a_run_repeated_from_the_start_is_the_same_bit_by_bit(engine):
-    motion = engine(problem("chain.mac"), 1e-9)
+    motion = engine(Task.of(problem("chain.mac"), tol=1e-9))
     begin, start = motion.time, motion.state.copy()
     motion.advance(2.0)
     first = motion.state.copy()
@@ -56,7 +56,7 @@ def test_a_run_repeated_from_the_start_is_the_same_bit_by_bit(engine):
 
 
 def test_pieces_join_and_hold_the_states_between(engine):
-    motion, other = (engine(problem("pendulum.mac")) for _ in range(2))
+    motion, other = (engine(Task.of(problem("pendulum.mac"))) for _ in range(2))
     pieces = list(motion.integrate(100.0))
     assert len(pieces) == motion.steps > 2 * FIRST_BLOCK
     assert [pieces[0].start, pieces[-1].end] == [0, 100]
@@ -72,7 +72,7 @@ def test_pieces_join_and_hold_the_states_between(engine):
 
 def test_an_obstruction_leaves_the_last_good_state(engine):
     """Before a singular configuration of the linkage, where the rods' angle is a right one: the tips are at y = 0."""
-    motion = engine(problem("linkage.mac"))
+    motion = engine(Task.of(problem("linkage.mac")))
     pieces = []
     with pytest.raises(Obstruction) as stopped:
         pieces.extend(motion.integrate(10.0))
@@ -86,7 +86,7 @@ def test_an_obstruction_leaves_the_last_good_state(engine):
 
 def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_scene):
     """Truth: ddot(x) = 6 x^2 has the motion x = 1/(1 - t)^2, which ends at t = 1."""
-    motion = engine(motion_problem(write_scene(BURST), Request(), Limits()))
+    motion = engine(Task.of(motion_problem(write_scene(BURST), Request(), Limits())))
     with failing(ErrorKind.NO_WAY_ON):
         motion.advance(2.0)
     assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)
@@ -109,7 +109,7 @@ def test_behind_an_obstruction_the_way_to_the_next_one_was_gone_twice(monkeypatc
 
 def test_the_first_block_of_a_long_program_is_short():
     """Its steps are taken twice where it ends before a singular configuration."""
-    short, long = (TaylorEngine(problem("linkage.mac", N=bars)) for bars in ("1", "8"))
+    short, long = (TaylorEngine(Task.of(problem("linkage.mac", N=bars))) for bars in ("1", "8"))
     assert long._first_block < short._first_block == FINE_BLOCK
 
 
@@ -128,4 +128,5 @@ system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2)$
 motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [6, 10])$
 """
     motion = motion_problem(write_scene(late), Request(), Limits())
-    assert decay_until(10, motion, read_precision("double")) == pytest.approx(DECAYS_IN_A_RUN / 4)
+    engine = TaylorEngine(Task.of(motion)._replace(end=10.0))
+    assert engine.decay == pytest.approx(DECAYS_IN_A_RUN / 4)

@@ -15,7 +15,7 @@ from holonom.sandbox import Limits
 from holonom.simulation.constraints.singularity import least_of, singular_values_at
 from holonom.simulation.engines import robust
 from holonom.simulation.engines.collocation import NODES, TAIL, Collocation
-from holonom.simulation.engines.engine import Solutions
+from holonom.simulation.engines.engine import Solutions, Task
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.residuals import condition
 
@@ -38,7 +38,7 @@ def singular_times(motion):
 
 
 def test_a_four_bar_linkage_goes_through_its_dead_centres():
-    motion = RobustEngine(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(Task.of(problem("linkage.mac"), tol=1e-12))
     motion.advance(10.0)
     assert np.allclose(motion.state[:2], FOUR_BAR_AT_10, rtol=0, atol=1e-9)
     assert len(singular_times(motion)) == 10
@@ -49,7 +49,7 @@ def test_a_four_bar_linkage_goes_through_its_dead_centres():
     ("bars", "revolutions"), [(4, 5), *(pytest.param(*each, marks=pytest.mark.long) for each in ((1, 25), (12, 1)))]
 )
 def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
-    motion = RobustEngine(problem("linkage.mac", N=str(bars)))
+    motion = RobustEngine(Task.of(problem("linkage.mac", N=str(bars))))
     motion.advance(revolutions * linkage_period(bars) + 0.1)
     assert np.allclose(motion.state[:2], linkage_tip(bars, motion.time), rtol=0, atol=1e-6)
     assert len(singular_times(motion)) == 2 * revolutions
@@ -57,7 +57,7 @@ def test_it_stays_on_its_branch_for_many_revolutions(bars, revolutions):
 
 
 def test_states_between_the_steps_and_within_a_collocation_step_are_on_the_motion():
-    motion = RobustEngine(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(Task.of(problem("linkage.mac"), tol=1e-12))
     for piece in motion.integrate(1.5):
         times = np.linspace(piece.start, piece.end, 5)
         tips = np.array([linkage_tip(1, t) for t in times])
@@ -70,7 +70,7 @@ def solution(motion, time, state):
 
 
 def test_constraint_forces_stay_right_through_a_dead_centre():
-    motion = RobustEngine(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(Task.of(problem("linkage.mac"), tol=1e-12))
     motion.advance(1.5)
     for away in [-3e-2, -1e-3, -1e-5, 1e-8, 1e-6, 1e-4, 1e-2, 0.4]:
         time = singular_times(motion)[0] + away
@@ -82,14 +82,14 @@ def test_constraint_forces_stay_right_through_a_dead_centre():
 
 @pytest.mark.parametrize("away", [-1e-2, -1e-4, -1e-6, -1e-8, 0.0, 1e-8, 1e-6, 1e-4, 1e-2])
 def test_it_may_start_at_a_dead_centre_and_beside_one(away):
-    motion, start = RobustEngine(problem("linkage.mac"), 1e-12), 0.70845002 + away
+    motion, start = RobustEngine(Task.of(problem("linkage.mac"), tol=1e-12)), 0.70845002 + away
     motion.restart(start, four_bar(start)[0])
     motion.advance(1.0)
     assert motion.state == pytest.approx(four_bar(1.0)[0], abs=1e-9)
 
 
 def test_a_motion_may_stop_and_go_on_anywhere():
-    motion = RobustEngine(problem("linkage.mac"), 1e-12)
+    motion = RobustEngine(Task.of(problem("linkage.mac"), tol=1e-12))
     for time in np.linspace(0.0, 1.5, 61)[1:]:
         motion.advance(time)
         assert motion.time == time
@@ -119,7 +119,7 @@ def in_line(write_scene):
 
 
 def test_from_a_singular_configuration_the_velocities_choose_the_parallelogram(in_line):
-    motion = RobustEngine(in_line("-3", "-3"), 1e-12)
+    motion = RobustEngine(Task.of(in_line("-3", "-3"), tol=1e-12))
     motion.advance(0.4)
     x0, y0, x1, y1 = motion.state[:4]
     assert (x1, y1) == pytest.approx((1 + x0, y0), abs=1e-12)
@@ -128,7 +128,7 @@ def test_from_a_singular_configuration_the_velocities_choose_the_parallelogram(i
 
 
 def test_from_a_singular_configuration_the_velocities_choose_the_folded_branch(in_line):
-    motion = RobustEngine(in_line("0", "-3"), 1e-12)
+    motion = RobustEngine(Task.of(in_line("0", "-3"), tol=1e-12))
     motion.advance(0.4)
     # the left rod lies still, its tip on the right rod's hinge; the other two turn together: v^2/3 + g y is constant
     assert motion.state[[0, 1, 4, 5]] == pytest.approx([1, 0, 0, 0], abs=1e-10)
@@ -137,16 +137,16 @@ def test_from_a_singular_configuration_the_velocities_choose_the_folded_branch(i
 
 def test_a_velocity_along_no_branch_is_refused(in_line):
     with pytest.raises(HolonomError):
-        RobustEngine(in_line("3", "-3"), 1e-12).advance(0.4)
+        RobustEngine(Task.of(in_line("3", "-3"), tol=1e-12)).advance(0.4)
 
 
 def test_at_rest_in_a_singular_configuration_nothing_tells_the_branch(in_line):
     with failing(ErrorKind.NO_WAY_ON):
-        RobustEngine(in_line("0", "0"), 1e-10).advance(1.0)
+        RobustEngine(Task.of(in_line("0", "0"), tol=1e-10)).advance(1.0)
 
 
 def test_the_first_collocation_step_was_as_long_as_a_division_by_no_speed_makes_it(in_line, monkeypatch):
-    motion = RobustEngine(in_line("-3", "-3"), 1e-10)
+    motion = RobustEngine(Task.of(in_line("-3", "-3"), tol=1e-10))
     monkeypatch.setattr(robust, "probed", lambda *asked: (2, 0.0))  # whose velocities point nowhere
     with np.errstate(divide="raise"), failing(ErrorKind.NO_WAY_ON):
         motion.restart(0.0, np.array([1.0, 0, 2, 0, 0, 0, 0, 0]))
@@ -154,7 +154,7 @@ def test_the_first_collocation_step_was_as_long_as_a_division_by_no_speed_makes_
 
 def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations():
     sarrus = problem("hard/sarrus_linkage.mac")
-    motion, times = RobustEngine(sarrus, 1e-12), np.linspace(0.25, 4.0, 16)
+    motion, times = RobustEngine(Task.of(sarrus, tol=1e-12)), np.linspace(0.25, 4.0, 16)
     assert motion.rank == len(sarrus.multipliers) - 1
     height = sarrus.coordinates.index("p3z")
     for time, angle in zip(times, sarrus_angles(times), strict=True):
@@ -165,7 +165,7 @@ def test_a_redundant_spatial_mechanism_moves_through_its_singular_configurations
 
 
 def test_under_redundant_constraints_forces_are_unique_and_multipliers_those_of_the_program():
-    motion = RobustEngine(problem("hard/sarrus_linkage.mac"), 1e-11)
+    motion = RobustEngine(Task.of(problem("hard/sarrus_linkage.mac"), tol=1e-11))
     motion.advance(0.3)
     found, at = solution(motion, motion.time, motion.state), motion.matrices(motion.time, motion.state)
     forces = at.mass @ found.accelerations - at.force
@@ -175,7 +175,7 @@ def test_under_redundant_constraints_forces_are_unique_and_multipliers_those_of_
 
 
 def test_the_papers_free_motion_stays_right_until_the_control_overflows():
-    motion = RobustEngine(problem("paper/paper.mac", "free_motion_scene"), 1e-11)
+    motion = RobustEngine(Task.of(problem("paper/paper.mac", "free_motion_scene"), tol=1e-11))
     for time in (10.0, 100.0, 400.0, 709.0):
         motion.advance(time)
         # q1 + q2 = (a + b t) exp(-t), q3 = u0 (a + b t), and no reaction
@@ -200,7 +200,7 @@ released : holonomic_scene(pair, initial_state = [x = 1, y = 1, dot(x) = 0, dot(
 
 
 def test_a_stiff_motion_is_found_out_and_followed(write_scene):
-    motion = RobustEngine(motion_problem(write_scene(STIFF), Request(), Limits()), 1e-8)
+    motion = RobustEngine(Task.of(motion_problem(write_scene(STIFF), Request(), Limits()), tol=1e-8))
     motion.advance(2.0)
     assert motion.stiff
     assert motion.steps < 1000  # DOP853 alone takes some thirty thousand
@@ -225,7 +225,7 @@ upright : holonomic_scene(bars, initial_state = [x0 = 0, y0 = 1, x1 = 1, y1 = 1,
 @pytest.mark.long
 def test_a_near_miss_is_no_singularity(write_scene):
     asked = motion_problem(write_scene(NEAR_MISS), Request(), Limits())
-    motion, conditions = RobustEngine(asked, 1e-11), []
+    motion, conditions = RobustEngine(Task.of(asked, tol=1e-11)), []
     for piece in motion.integrate(3.0):
         v0, v1 = motion.state[4:6], motion.state[6:]
         energy = (2 * (v0 @ v0 + v1 @ v1) + v0 @ v1) / 6 + GRAVITY * (motion.state[1] + motion.state[3])
@@ -237,7 +237,7 @@ def test_a_near_miss_is_no_singularity(write_scene):
 
 @pytest.mark.long
 def test_a_length_that_vanishes_stops_the_motion():
-    motion = RobustEngine(problem("hard/vanishing_length.mac"))
+    motion = RobustEngine(Task.of(problem("hard/vanishing_length.mac")))
     with failing(ErrorKind.NO_WAY_ON):
         motion.advance(2.0)
     assert motion.time == pytest.approx(1.0, abs=1e-5)

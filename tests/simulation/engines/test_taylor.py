@@ -15,6 +15,7 @@ from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
 from holonom.simulation.engines.code import Code, codes_for, is_worthwhile, running
+from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
@@ -22,11 +23,11 @@ from holonom.simulation.simulate import simulate
 
 def test_better_code_for_long_runs():
     """What is compiled quickly first; better code is worthwhile for long runs, and in hardware numbers alone."""
-    assert TaylorEngine(problem("pendulum.mac")).code is Code.PLAIN
-    assert TaylorEngine(problem("pendulum.mac"), precision="extended").code is Code.QUICK
-    assert TaylorEngine(problem("pendulum.mac"), compact=True).code is Code.COMPACT
-    assert TaylorEngine(problem("pendulum.mac"), compact=False).code is Code.UNROLLED
-    long = TaylorEngine(problem("pendulum.mac", "swing_scene"))
+    assert TaylorEngine(Task.of(problem("pendulum.mac"))).code is Code.PLAIN
+    assert TaylorEngine(Task.of(problem("pendulum.mac"), precision="extended")).code is Code.QUICK
+    assert TaylorEngine(Task.of(problem("pendulum.mac"), compact=True)).code is Code.COMPACT
+    assert TaylorEngine(Task.of(problem("pendulum.mac"), compact=False)).code is Code.UNROLLED
+    long = TaylorEngine(Task.of(problem("pendulum.mac", "swing_scene")))
     long.advance(100_000.0)
     assert long.code is Code.UNROLLED
     second = 1 / running(Code.QUICK, 20, 1, 1e-9)  # steps
@@ -68,9 +69,9 @@ swing : holonomic_scene(system, control_law = [u = table([{points}])], initial_s
 
 @pytest.mark.parametrize("compact", [None, True, False])
 def test_the_code_does_not_change_the_motion(compact):
-    motion = TaylorEngine(problem("car_axis.mac"), compact=compact)
+    motion = TaylorEngine(Task.of(problem("car_axis.mac"), compact=compact))
     motion.advance(1.0)
-    other = TaylorEngine(problem("car_axis.mac"), stabilization=Stabilization.NONE, compact=True)
+    other = TaylorEngine(Task.of(problem("car_axis.mac"), stabilization=Stabilization.NONE, compact=True))
     other.advance(1.0)
     assert motion.state == pytest.approx(other.state, abs=1e-11)
 
