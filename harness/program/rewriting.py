@@ -35,6 +35,8 @@ def folded(operation: Operation, arguments: list[Expression]) -> Expression:
             return -a
         case Operation.SUBTRACT, [Fraction() as a, Fraction() as b]:
             return a - b
+        case Operation.SUBTRACT, [a, b] if _weighted(a) == _weighted(b):
+            return ZERO
         case Operation.SUBTRACT, [a, Fraction(numerator=0)]:
             return a
         case Operation.SUBTRACT, [Fraction(numerator=0), b]:

@@ -102,11 +102,15 @@ def test_a_force_that_jumps_at_a_place_gave_0_6266(engine):
     assert outcomes(report) == [EventOutcome.CROSSED, EventOutcome.CROSSED]
 
 
+def contact_time(stiffness: float, speed: float) -> float:
+    """Return the time that a contact with the force of Hertz takes."""
+    deepest = (5 * speed**2 / (4 * stiffness)) ** 0.4
+    return 2 * deepest / speed * beta(0.4, 0.5) * 0.4
+
+
 def rebound(stiffness: float, speed: float, time: float) -> float:
     """Return the place at a time after a contact at x = 1 that begins at half a second."""
-    deepest = (5 * speed**2 / (4 * stiffness)) ** 0.4
-    contact = 2 * deepest / speed * beta(0.4, 0.5) * 0.4
-    return 1 - speed * (time - 0.5 - contact)
+    return 1 - speed * (time - 0.5 - contact_time(stiffness, speed))
 
 
 @pytest.mark.parametrize(
@@ -125,6 +129,16 @@ def test_hertz_contact_ended_in_short_steps(contact, engine):
     assert [switch.function for switch in report.switchings] == ["x-1", "x-1"]
     assert report.coordinates["x"] == pytest.approx(rebound(50, 2, 2), abs=10 * DIGITS[engine])
     assert report.velocities["dot(x)"] == pytest.approx(-2, abs=10 * DIGITS[engine])
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_second_hertz_contact_with_a_wall_ended_in_short_steps(engine):
+    """Between walls at x = 1 and x = -1 the mass flies for a second after each contact."""
+    problem = mass(force="50*(max(0, -x - 1)^(3/2) - max(0, x - 1)^(3/2))", x="0", v="2", end="5")
+    report = end_of(problem, engine)
+    again = 2 * (1 + contact_time(50, 2))
+    assert report.coordinates["x"] == pytest.approx(rebound(50, 2, 5 - again), abs=20 * DIGITS[engine])
+    assert [segment.engine for segment in report.segments] == [engine]
 
 
 @pytest.mark.parametrize("engine", ENGINES)

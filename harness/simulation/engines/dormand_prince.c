@@ -251,7 +251,10 @@ static int follow(struct follower *f)
         if (f->times) f->times[f->taken] = f->t;
         const double before = f->last;
         const double taken = go_on(&f->t, f->until, &step, f->state, f->dense ? f->dense[f->taken] : NULL);
-        if (!(taken > 0)) return 1;
+        if (!(taken > 0)) {
+            reached = NAN;      /* the next step is not as short, wherever the motion continues */
+            return 1;
+        }
         f->taken++;
         f->last = taken;
         if (f->t < f->until) {

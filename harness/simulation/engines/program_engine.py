@@ -143,7 +143,7 @@ class ProgramEngine:
         """Continue from another time and state (see `Engine.restart`)."""
         self._go_back(time_point, state)
         self._behind_obstruction = self._obstruction is not None
-        self._usual, self._obstruction = 0.0, None
+        self._longest, self._usual, self._obstruction = 0.0, 0.0, None
 
     def advance(self, until: Any) -> None:
         """Integrate until the motion program fails (see `Engine.advance`)."""
