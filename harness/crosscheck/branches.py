@@ -23,6 +23,9 @@ CHANGING = tuple(function for each, function in CLASSES.items() if each.behaviou
 RANGE = 2
 """Of their argument, around zero."""
 
+MOST_SIGNS = 3
+"""Signs whose cases are looked at one by one."""
+
 
 @dataclass(frozen=True)
 class Branch:
@@ -49,12 +52,7 @@ class Branch:
         -------
         bool
         """
-        argument = self.argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
-        argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
-        bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
-        if isinstance(bounds, sp.AccumBounds):
-            return bool(bounds.max <= 0 if side > 0 else bounds.min >= 0)
-        return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
+        return all(_is_never(side, case) for case in _cases_by_signs(self.argument))
 
     def target(self, draw: random.Random) -> mp.mpf:
         """Return a value of the argument near which points are drawn.
@@ -70,6 +68,36 @@ class Branch:
             Zero, or a number from -`RANGE` to `RANGE` if the function has no sides.
         """
         return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
+
+
+def _is_never(side: int, argument: sp.Expr) -> bool:
+    argument = argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
+    argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
+    bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
+    if isinstance(bounds, sp.AccumBounds):
+        return bool(bounds.max <= 0 if side > 0 else bounds.min >= 0)
+    return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
+
+
+def _cases_by_signs(argument: sp.Expr, most: int = MOST_SIGNS) -> list[sp.Expr]:
+    """Return the cases of an argument by the signs s in it, as abs(g) or sign(g).
+
+    Each g = s P is linear in a symbol, which is put in. Other arguments remain as they are.
+    """
+    for part in sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else ():
+        g = part.args[0]
+        for x in sorted(g.free_symbols, key=str):
+            slope = g.diff(x)
+            if not slope.is_number:
+                continue
+            cases = []
+            for sign in (1, -1, 0):
+                size = sp.Dummy(positive=True)
+                with_sign = argument.xreplace({sp.Abs(g): sign * g, sp.sign(g): sp.Integer(sign)})
+                placed = with_sign.subs(x, (sign * size - g + slope * x).expand() / slope).expand()
+                cases += _cases_by_signs(placed, most - 1)
+            return cases
+    return [argument]
 
 
 def _is_bounded(part: sp.Expr) -> bool:

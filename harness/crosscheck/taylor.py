@@ -124,6 +124,8 @@ class Taylor:
             for _ in range(int(exponent)):
                 found = self.multiply(found, x)
             return found
+        if not any(x) and exponent * (self.order + 1) > self.order:  # x = O(t^(order + 1))
+            return (mp.zero,)
         whole = exponent == int(exponent)
         if not x[0] or (x[0] < 0 and not whole):
             raise IrregularPoint

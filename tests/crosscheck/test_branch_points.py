@@ -57,6 +57,13 @@ def test_an_argument_and_its_negative_are_one():
         (sp.sin(Z) + 2, []),  # of a complex argument the sine is unbounded
         (sp.sqrt(X) ** 2 + 1, []),
         (1 + sp.log(X) ** 2, [-1]),
+        (sp.Abs(X) - X, [-1]),
+        (sp.Abs(X - 2 * Y) - X + 2 * Y, [-1]),
+        (X * (1 + sp.sign(X)) / 2 + (1 - sp.sign(X)) / 4, [-1]),
+        (-sp.Abs(X) - sp.Abs(Y) + Y, [1]),
+        (sp.Abs(X) - 2 * X, []),
+        (sp.Abs(X) - 1, []),
+        (sp.Abs(sp.sin(X)) - sp.sin(X), []),
     ],
 )
 def test_a_side_is_empty_only_where_it_is_known(argument, sides):

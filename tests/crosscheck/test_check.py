@@ -112,6 +112,14 @@ motion : holonomic_scene(system, control_law = [u = -1 - t], parameter_values = 
     assert Verdict.UNDECIDED not in {found.verdict for found in report.verdicts}
 
 
+@pytest.mark.parametrize("contact", ["20*max(0, -x)^(3/2)", "if x > 0 then -2*sqrt(x) else -3*x", "3*abs(x)^(3/2)"])
+def test_roots_in_a_branch_left_the_program_undecided(contact):
+    report = holonom.system(f"""system : holonomic_system(coordinates = [x],
+  kinetic_energy = dot(x)^2/2, forces = [{contact}])$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$""").check()
+    assert {found.verdict for found in report.verdicts} <= {Verdict.PROVED, Verdict.AGREES, Verdict.NOTHING}
+
+
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.head)
 def test_special_functions_are_met_in_a_description_by_their_heads(function):
     """Maxima takes minutes to evaluate one in 50 digits, which is therefore not asked for."""

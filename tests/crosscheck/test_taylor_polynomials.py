@@ -44,6 +44,18 @@ def test_composition_rates_and_integrals():
     assert TAYLOR.rate((mp.mpf(4),)) == (0,)
 
 
+@pytest.mark.parametrize(("order", "exponent"), [(0, "0.25"), (1, "0.75"), (2, "1.5"), (5, "2.5")])
+def test_powers_of_what_vanishes_to_its_order_vanish(order, exponent):
+    """(x^(order + 1))^exponent has no term up to the order."""
+    assert not any(Taylor(order).power((mp.zero,) * (order + 1), mp.mpf(exponent)))
+
+
+@pytest.mark.parametrize(("order", "exponent"), [(1, "0.5"), (2, "0.5"), (5, "0.75"), (0, "-1")])
+def test_powers_of_what_vanishes_to_its_order_may_have_terms(order, exponent):
+    with pytest.raises(IrregularPoint):
+        Taylor(order).power((mp.zero,), mp.mpf(exponent))
+
+
 @pytest.mark.parametrize(("x", "exponent"), [(0, -1), (-2, mp.mpf(1) / 2)])
 def test_powers_that_are_not_analytic_are_refused(x, exponent):
     with pytest.raises(IrregularPoint):
