@@ -189,7 +189,7 @@
     (cond ((and collected (null (cdr collected)) (eql (factor-exponent (car collected)) 1))
            (node-term (factor-node (car collected))))
           ((any-of-p #'openable-p collected) (product-of (mapcar #'opened collected)))
-          (t (node-term (product-node collected))))))
+          (t (or (with-root-of-base collected) (node-term (product-node collected)))))))
 
 (defun product-node (factors)
   (node-of 'product factors
@@ -225,6 +225,18 @@
   (if (and (eq (node-kind node) 'call) (eq (car (node-parts node)) 'mexpt))
       (let ((exponent (third (node-parts node))))
         (if (number-term-p exponent) (term-coefficient exponent)))))
+
+(defun with-root-of-base (factors)
+  "The product with x*x^(-1/2) as x^(1/2), which has a value at x = 0; nil if it has no such factors."
+  (dolist (root factors)
+    (let* ((exponent (root-exponent (factor-node root)))
+           (x (if exponent (second (node-parts (factor-node root)))))
+           (base (if x (find (term-node x) factors :key #'factor-node))))
+      (if (and base (minusp (* (factor-exponent root) (factor-exponent base))))
+          (return (product-of
+                   (list (scaled-term (expt (term-coefficient x) (- (factor-exponent base)))
+                                      (power-of x (+ (factor-exponent base) (* exponent (factor-exponent root)))))
+                         (product-of-factors (remove root (remove base factors))))))))))
 
 (defun raised-factors (node exponent)
   (mapcar #'(lambda (factor)

@@ -379,3 +379,13 @@ def test_a_sign_had_no_value(write_scene):
       s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 2])$""")
     with failing(ErrorKind.NOT_ANALYTIC):
         compute_series(scene, SeriesRequest(4, precision="double"), Limits())
+
+
+@pytest.mark.parametrize("contact", ["20*max(0, -x)^(3/2)", "if x < 0 then 20*(-x)^(3/2) else 0"])
+def test_series_on_both_sides_of_a_hertz_contact(contact):
+    """The force is 20 (1 + t)^(3/2) at first where x = -1 - t, and zero where x is positive."""
+    text = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{contact}])$
+        scene : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {x}])$"""
+    inside, outside = (holonom.system(text.format(contact=contact, x=x)).series(order=3) for x in (-1, 1))
+    assert numbers(inside.coordinates["x"]) == [-1, -1, 10, 5]
+    assert numbers(outside.coordinates["x"]) == [1, 1, 0, 0]
