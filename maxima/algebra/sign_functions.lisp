@@ -85,14 +85,33 @@
                       (and (char= (char (symbol-name operator) 0) #\$) (fboundp operator)))))
            (some #'calls-p (cdr e)))))
 
-;; A branch of weight zero is dropped where the signs are put in.
+;; A branch of weight zero is dropped where the signs are put in; elsewhere it has a value, too.
 (defun conditional-with-signs (clauses)
   "Clauses are condition, value, condition, value, ... as Maxima keeps them."
   (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
     (if (null value) ($refuse '$if_without_else))
     (if (eql weight 1)
         value
-        (add (mul weight value) (mul (sub 1 weight) (conditional-with-signs (cddr clauses)))))))
+        (let ((names (cdr ($listofvars (first clauses)))) (other (conditional-with-signs (cddr clauses))))
+          (add (mul weight (restricted value weight names))
+               (mul (sub 1 weight) (restricted other (sub 1 weight) names)))))))
+
+(defun restricted (e weight names)
+  "The expression whose partial functions of what the condition decides have a value where its weight is zero."
+  (if (or (atom e) (member 'array (car e)))
+      e
+      (let ((parts (mapcar #'(lambda (part) (restricted part weight names)) (cdr e))))
+        (if (and (partial-p e) (some #'(lambda (name) (not (free (second e) name))) names))
+            (simplifya (list* (car e) (with-value-inside (caar e) (first parts) weight) (rest parts)) nil)
+            (if (same-items-p parts (cdr e)) e (simplifya (cons (list (caar e)) parts) t))))))
+
+(defun partial-p (e)
+  (and (member (caar e) *partial-functions*)
+       (not (and (eq (caar e) 'mexpt) (integerp (third e)) (plusp (third e))))))
+
+(defun with-value-inside (operator x weight)
+  (let ((inside (if (member operator '(%acosh %asec %acsc %acoth)) 2 1//2)))
+    (add (mul weight x) (mul (sub 1 weight) inside))))
 
 (defun condition-weight (condition)
   "1 where the condition holds, 0 where it does not."

@@ -17,6 +17,7 @@ from programs import (
 )
 from reference import assert_within_bounds, reference
 
+import holonom
 from holonom.program.c_function import compile_c
 from holonom.program.numpy_function import NumpyFunction
 from holonom.program.targets import python
@@ -102,3 +103,14 @@ def test_a_singular_pivot_gives_no_finite_number():
 def test_python_source_refused_the_sign_of_a_number_of_numpy():
     written = program(["a"], [("w", ["Sign", "a"])], {"out": "w"})
     assert [python_function(written)([np.float64(a)]) for a in (-2.5, 0, 3)] == [[-1], [0], [1]]
+
+
+@pytest.mark.parametrize(("x", "acceleration"), [(-1, 3), (4, -4)])
+def test_a_branch_that_is_not_taken_has_a_value(x, acceleration):
+    """sqrt(-1) times zero is no number."""
+    scene = holonom.system("""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+      forces = [if x > 0 then -2*sqrt(x) else -3*x])$
+      scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$""")
+    written = scene.program().program
+    for function in (NumpyFunction(written), compile_c(written), heyoka_function(written), python_function(written)):
+        assert function(np.array([0.0, x, 0.0]))[0] == pytest.approx(acceleration)
