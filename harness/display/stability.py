@@ -122,7 +122,8 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
     if equilibria.more:
         console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
     if equilibria.singular:
-        console.print(f"{equilibria.singular} starts led to singular configurations, which are not classified.")
+        starts = f"{equilibria.singular} starts"
+        console.print(f"{starts} led to singular configurations or sign changes, which are not classified.")
     if equilibria.turns:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
     for e in equilibria.reversals:

@@ -25,7 +25,7 @@ import scipy.linalg
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
-from ..program.motion_problem import MotionProblem, require_analytic, require_laws
+from ..program.motion_problem import DependsOn, MotionProblem, require_analytic, require_laws
 from ..schema import PAIRS, NumberText
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
@@ -35,7 +35,7 @@ from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
 from .equivalence import TURN, Equivalence
 from .linear_equations import LinearEquations, Point
-from .linearization import Linearization, linearized, perturbed_eigenvalues
+from .linearization import Linearization, changing_function, linearized, perturbed_eigenvalues
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -125,7 +125,9 @@ class Equilibria(Documented, Shown):
         "Those found, of each family that is not isolated one; there may be others unless complete is true."
     )
     more: int = entry("Further solutions of the families of those that are not isolated.", minimum=0)
-    singular: int = entry("Solutions in or near singular configurations, which are not classified.", minimum=0)
+    singular: int = entry(
+        "Solutions in or near singular configurations, or where signs change, which are not classified.", minimum=0
+    )
     turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
     reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")
     count: int | None = entry(
@@ -193,9 +195,9 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time, a control has no value, or the motion is not analytic.
+        The equations contain the time, a control has no value, or a velocity's sign decides forces.
     """
-    require_analytic(problem)
+    require_analytic(replace(problem, signs=tuple(s for s in problem.signs if s.by is not DependsOn.CONFIGURATION)))
     require_laws(problem)
     if equations.changes_with_time:
         raise HolonomError(ErrorKind.NEVER_AT_REST)
@@ -356,7 +358,7 @@ class _Search:
             q = same.chosen(q)
             if any(self._close(q, other.q, same) for other in known):
                 continue
-            stiffness = self._stiffness(q, multipliers)
+            stiffness = self._stiffness(q, multipliers) if self._is_between_switchings(q) else None
             if stiffness is None:
                 singular.append(q)
                 continue
@@ -371,6 +373,9 @@ class _Search:
             else:
                 known.append(found)
         return more, singular
+
+    def _is_between_switchings(self, q: Vector) -> bool:
+        return changing_function(self._problem, self._t, np.concatenate([q, np.zeros(self._n)])) is None
 
     def _most_independent(self, q: Vector) -> tuple[int, ...]:
         """Return the most independent constraints at a place, if some are redundant."""

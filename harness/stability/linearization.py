@@ -329,9 +329,6 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
 def require_between_switchings(problem: MotionProblem, t: float, state: Vector) -> None:
     """Reject a state at which a sign changes, slides, or depends on a reaction.
 
-    A switching function counts as zero if it is small relative to its changes when time, coordinates and velocities
-    move by nominal sizes.
-
     Parameters
     ----------
     problem : MotionProblem
@@ -346,18 +343,41 @@ def require_between_switchings(problem: MotionProblem, t: float, state: Vector) 
     HolonomError
         It is not a state between switchings.
     """
-    if not problem.signs:
-        return
+    changing = changing_function(problem, t, state)
+    if changing is not None:
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing)
+
+
+def changing_function(problem: MotionProblem, t: float, state: Vector) -> str | None:
+    """Return the first switching function that changes its sign at a state.
+
+    One that depends on a reaction counts as well.
+
+    A function counts as zero if it is small relative to its changes when time, coordinates and velocities move by
+    nominal sizes.
+
+    Parameters
+    ----------
+    problem, t, state : MotionProblem, float, ndarray of shape (2n,)
+        As for `require_between_switchings`.
+
+    Returns
+    -------
+    str or None
+        None between switchings.
+    """
     nominal, names = nominal_of(problem), ("t", *problem.state)
     points = np.array([t, *state])[:, None] + np.diag([0.0, nominal.time, *nominal.state])[1:]
+    known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}
     for place, sign in enumerate(problem.signs, start=1):
         program = computing(problem.switching, {f"switch[{place}]"})
-        known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}
         if not names_used(program) & set(program.inputs) <= known.keys():
-            raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, sign.of)
+            return sign.of
         here, *beside = NumpyFunction(program)([known.get(name, 0.0) for name in program.inputs])[0]
         if not abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here))):
-            raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, sign.of)
+            return sign.of
+        known[sign.name] = np.sign(here)
+    return None
 
 
 def linearized(

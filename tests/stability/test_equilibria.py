@@ -488,3 +488,28 @@ system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot
 rest : holonomic_scene(system, initial_state = [], initial_guess = [x = {place}, y = 1 - {place}/2, dot(x) = 0,
   dot(y) = 0])$""").equilibria()
     assert (found.count, found.complete, found.regular) == (count, complete, complete)
+
+
+UNILATERAL = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, {})$
+scene : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 0])$"""
+
+
+@pytest.mark.parametrize(
+    ("forces", "places"),
+    [
+        ("potential_energy = [weight = x], forces = [contact = [20*max(0, -x)]]", [-1 / 20]),
+        ("potential_energy = [weight = x], forces = [contact = [20*max(0, -x)^(3/2)]]", [-(20 ** (-2 / 3))]),
+        ("potential_energy = -2*x^2 + 3*max(0, abs(x) - 1)^2", [-3, 3]),
+        ("potential_energy = abs(x)", []),
+    ],
+)
+def test_equilibria_are_found_between_the_surfaces_where_signs_change(forces, places):
+    found = holonom.system(UNILATERAL.format(forces)).equilibria()
+    assert [each.coordinates["x"] for each in found] == pytest.approx(places)
+    assert {each.stability for each in found} <= {Stability.STABLE}
+
+
+def test_equilibria_with_dry_friction_are_refused():
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(UNILATERAL.format("potential_energy = x^2, forces = [-signum(dot(x))]")).equilibria()
+    assert refused.value.kind is ErrorKind.NOT_ANALYTIC

@@ -307,6 +307,14 @@ def test_what_has_no_derivative_ended_in_an_internal_error(force, observed):
     assert refused.value.kind is ErrorKind.NO_DERIVATIVES
 
 
+@pytest.mark.parametrize(("x", "stiffness"), [(1, 0), (-4, 60)])
+@pytest.mark.parametrize("contact", ["20*max(0, -x)^(3/2)", "if x < 0 then 20*(-x)^(3/2) else 0"])
+def test_hertz_contact_is_linearised_on_both_sides(contact, x, stiffness):
+    text = f"""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{contact}])$
+        scene : holonomic_scene(system, initial_state = [x = {x}, dot(x) = 1], time_span = [0, 1])$"""
+    assert holonom.system(text).linearize().A.ravel() == pytest.approx([0, 1, -stiffness, 0], abs=1e-12)
+
+
 def test_a_motion_that_ends_before_is_refused():
     ending = DOUBLE_PENDULUM.replace("x1 = 0, y1 = -1, x2 = 0", "x1 = 1, y1 = 0, x2 = 1").replace(
         "y2 = -2,", "y2 = -1,"
