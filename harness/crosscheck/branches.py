@@ -52,7 +52,7 @@ class Branch:
         -------
         bool
         """
-        return all(_is_never(side, case) for case in _cases_by_signs(self.argument))
+        return _is_never(side, self.argument, MOST_SIGNS)
 
     def target(self, draw: random.Random) -> mp.mpf:
         """Return a value of the argument near which points are drawn.
@@ -70,7 +70,12 @@ class Branch:
         return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
 
 
-def _is_never(side: int, argument: sp.Expr) -> bool:
+def _is_never(side: int, argument: sp.Expr, most: int) -> bool:
+    """Return True if an argument is not on a side of zero for any of some signs in it, one after the other."""
+    parts = sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else []
+    by_signs = [cases for part in parts if (cases := _cases_by_sign(argument, part.args[0]))]
+    if by_signs:
+        return any(all(_is_never(side, case, most - 1) for case in cases) for cases in by_signs)
     argument = argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
     argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
     bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))
@@ -79,25 +84,16 @@ def _is_never(side: int, argument: sp.Expr) -> bool:
     return bool(argument.is_nonpositive if side > 0 else argument.is_nonnegative)
 
 
-def _cases_by_signs(argument: sp.Expr, most: int = MOST_SIGNS) -> list[sp.Expr]:
-    """Return the cases of an argument by the signs s in it, as abs(g) or sign(g).
-
-    Each g = s P is linear in a symbol, which is put in. Other arguments remain as they are.
-    """
-    for part in sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else ():
-        g = part.args[0]
-        for x in sorted(g.free_symbols, key=str):
-            slope = g.diff(x)
-            if not slope.is_number:
-                continue
-            cases = []
-            for sign in (1, -1, 0):
-                size = sp.Dummy(positive=True)
-                with_sign = argument.xreplace({sp.Abs(g): sign * g, sp.sign(g): sp.Integer(sign)})
-                placed = with_sign.subs(x, (sign * size - g + slope * x).expand() / slope).expand()
-                cases += _cases_by_signs(placed, most - 1)
-            return cases
-    return [argument]
+def _cases_by_sign(argument: sp.Expr, g: sp.Expr) -> list[sp.Expr]:
+    """Return an argument with g = s P put in, for each sign s. No case if g is linear in no symbol."""
+    cases: list[sp.Expr] = []
+    x, slope = next(((x, d) for x in sorted(g.free_symbols, key=str) if (d := g.diff(x)).is_number), (None, None))
+    if x is not None:
+        for sign in (1, -1, 0):
+            size = sp.Dummy(positive=True)
+            with_sign = argument.xreplace({sp.Abs(g): sign * g, sp.sign(g): sp.Integer(sign)})
+            cases.append(with_sign.subs(x, (sign * size - g + slope * x).expand() / slope).expand())
+    return cases
 
 
 def _is_bounded(part: sp.Expr) -> bool:

@@ -32,6 +32,7 @@ from mpmath.libmp import (
 
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import VARIADIC, Call, Constant, Expression, Name, Operation, Program
+from ..program.rewriting import computing
 from .irregular_point import IrregularPoint
 from .tape import value_of
 from .taylor import Polynomial, Taylor
@@ -255,7 +256,8 @@ def with_signs(problem: MotionProblem, inputs: Values) -> Values:
     for place, sign in enumerate(problem.signs, 1):
         if sign.by is DependsOn.REACTION:
             continue
-        switch = run(problem.switching, found)[f"switch[{place}]"][0]
+        name = f"switch[{place}]"
+        switch = run(computing(problem.switching, {name}), found)[name][0]
         if not switch:
             raise IrregularPoint
         found[sign.name] = (mp.mpf(1 if switch > 0 else -1),)

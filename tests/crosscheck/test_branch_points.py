@@ -61,6 +61,7 @@ def test_an_argument_and_its_negative_are_one():
         (sp.Abs(X - 2 * Y) - X + 2 * Y, [-1]),
         (X * (1 + sp.sign(X)) / 2 + (1 - sp.sign(X)) / 4, [-1]),
         (-sp.Abs(X) - sp.Abs(Y) + Y, [1]),
+        ((1 - sp.sign(X - 1)) * (1 + X) * (1 + sp.sign(X)) + sp.sign(X - 1) + 1, [-1]),
         (sp.Abs(X) - 2 * X, []),
         (sp.Abs(X) - 1, []),
         (sp.Abs(sp.sin(X)) - sp.sin(X), []),

@@ -427,3 +427,12 @@ def test_friction_sticks_from_rest_until_the_force_is_larger(force, span, end, e
     motion = holonom.system(STICKING.format(force=force, span=span)).simulate(samples=2, engine=engine)
     assert motion["x"][-1] == pytest.approx(end, abs=1e-9)
     assert motion.report.trusted
+
+
+@pytest.mark.parametrize(
+    ("force", "function"),
+    [("if abs(x) > 1/2 then -1 else -x", "abs(x)-1/2"), ("max(0, signum(x - 1/2) + x)", "x+signum(x-1/2)")],
+)
+def test_a_switching_function_contained_a_symbol_for_another_sign(force, function):
+    report = end_of(mass(force=force, x="1/10", v="1", end="1"))
+    assert function in {switching.function for switching in report.switchings}
