@@ -71,7 +71,7 @@ class Branch:
 
 
 def _is_never(side: int, argument: sp.Expr, most: int) -> bool:
-    """Return True if an argument is not on a side of zero for any of some signs in it, one after the other."""
+    """Return True if an argument is never on a side of zero, whatever signs it contains."""
     parts = sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else []
     by_signs = [cases for part in parts if (cases := _cases_by_sign(argument, part.args[0]))]
     if by_signs:
@@ -85,7 +85,7 @@ def _is_never(side: int, argument: sp.Expr, most: int) -> bool:
 
 
 def _cases_by_sign(argument: sp.Expr, g: sp.Expr) -> list[sp.Expr]:
-    """Return an argument with g = s P put in, for each sign s. No case if g is linear in no symbol."""
+    """Return an argument with g = s P for each sign s, none if g is not linear."""
     cases: list[sp.Expr] = []
     x, slope = next(((x, d) for x in sorted(g.free_symbols, key=str) if (d := g.diff(x)).is_number), (None, None))
     if x is not None:
