@@ -71,7 +71,7 @@ class Branch:
 
 
 def _is_never(side: int, argument: sp.Expr, most: int) -> bool:
-    """Return True if an argument is never on a side of zero, whatever signs it contains."""
+    """Return True if an argument is on a side of zero for none of its signs."""
     parts = sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else []
     by_signs = [cases for part in parts if (cases := _cases_by_sign(argument, part.args[0]))]
     if by_signs:
