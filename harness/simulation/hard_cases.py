@@ -96,7 +96,7 @@ def hard_cases(
         yield Difficulty.FREE_CANCELLATION
     if steps > MANY_STEPS:
         yield Difficulty.LONG_RUN
-    if stiffness(start) > STIFF or _is_slowed(start, end, steps):
+    if _stiffness(start) > STIFF or _is_slowed(start, end, steps):
         yield Difficulty.STIFF
 
 
@@ -125,21 +125,11 @@ def dependence(problem: MotionProblem, at: MotionState) -> str | None:
     return translatable("of %(g)s constraints only %(rank)s are independent at t = %(t)g", g=g, rank=rank, t=at.t)
 
 
-def stiffness(at: MotionState) -> float:
+def _stiffness(at: MotionState) -> float:
     """Return the ratio of the largest to the smallest squared frequency.
 
-    The frequencies are those of small deviations from the motion.
-
-    Parameters
-    ----------
-    at : MotionState
-        State of the motion.
-
-    Returns
-    -------
-    float
-        From the derivative of the accelerations with respect to the coordinates, along what the constraints leave
-        free, in the mass metric.
+    The frequencies are those of small deviations from the motion: from the derivative of the accelerations with respect
+    to the coordinates, along what the constraints leave free, in the mass metric.
     """
     change = _free_changes(at)
     if change is None:
@@ -149,19 +139,11 @@ def stiffness(at: MotionState) -> float:
     return float(moving.max() / moving.min()) if moving.size else 1.0
 
 
-def fastest_decay(at: MotionState) -> float:
+def _fastest_decay(at: MotionState) -> float:
     """Return the largest decay rate of small deviations that exceeds their frequency.
 
-    Parameters
-    ----------
-    at : MotionState
-        State of the motion.
-
-    Returns
-    -------
-    float
-        Per unit of time, zero if no decay rate exceeds its frequency. It follows from the derivatives of the
-        accelerations with respect to coordinates and velocities.
+    It is per unit of time, and zero if none does. It follows from the derivatives of the accelerations with respect to
+    coordinates and velocities.
     """
     change = _free_changes(at, velocities=True)
     if change is None:
@@ -173,7 +155,7 @@ def fastest_decay(at: MotionState) -> float:
 
 def _is_slowed(start: MotionState, end: MotionState, steps: int) -> bool:
     """Return True if many steps were limited by a decay that has ended long before."""
-    return steps > MANY_STEPS and fastest_decay(end) * (end.t - start.t) > DECAYED * steps
+    return steps > MANY_STEPS and _fastest_decay(end) * (end.t - start.t) > DECAYED * steps
 
 
 def _free_changes(at: MotionState, velocities: bool = False) -> Matrix | None:

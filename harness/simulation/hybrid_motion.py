@@ -17,7 +17,7 @@ the state, an impulse of a switching surface without a law of impact.
 
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Hashable, Iterator, Sequence, Set
+from collections.abc import Callable, Hashable, Iterator, Sequence, Set
 from dataclasses import replace
 from enum import StrEnum
 from fractions import Fraction
@@ -30,7 +30,7 @@ import numpy as np
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern, sticking
-from ..program.motion_problem import DependsOn, MotionProblem, Sign, function_of_knot
+from ..program.motion_problem import Built, DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
 from ..program.sign_pattern import driven, program_in, switching_function
 from .accuracy_check import has_root_of
@@ -385,12 +385,13 @@ class HybridMotion:
 
     def _real_state(self, pattern: Pattern, t: Any, state: Numbers) -> Numbers:
         """Return the state, moved to where accelerations of a pattern are real."""
-        what = real_state, frozenset(pattern.items())
-        if what not in self._functions:
+
+        def build() -> Evaluation | None:
             motion = program_in(self.problem, self.problem.motion, pattern)
             has_root = has_root_of(motion, self.problem.state)
-            self._functions[what] = evaluation_once(self.problem, motion, self._precision) if has_root else None
-        solved = self._functions[what]
+            return evaluation_once(self.problem, motion, self._precision) if has_root else None
+
+        solved = self._once((real_state, frozenset(pattern.items())), build)
         if solved is None:
             return state
         return real_state(lambda *at: solved(self._inputs(*at)), t, state, self.nominal, self._precision)
@@ -431,9 +432,7 @@ class HybridMotion:
 
     def _lasting_modes(self, pattern: Pattern) -> FrictionModes | None:
         what = modes_that_may_agree, frozenset(pattern.items())
-        if what not in self._functions:
-            self._functions[what] = modes_that_may_agree(self.problem, pattern, self._precision)
-        return self._functions[what]
+        return self._once(what, lambda: modes_that_may_agree(self.problem, pattern, self._precision))
 
     def _only(self, modes: FrictionModes, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
         """Return the pattern of the one solution at a state."""
@@ -460,9 +459,7 @@ class HybridMotion:
     def _modes_at(self, pattern: Pattern, zeros: Sequence[str]) -> FrictionModes:
         known = {name: value for name, value in pattern.items() if name not in zeros}
         what = FrictionModes, frozenset(known.items()), tuple(zeros)
-        if what not in self._functions:
-            self._functions[what] = FrictionModes(self.problem, known, zeros, self._precision)
-        return self._functions[what]
+        return self._once(what, lambda: FrictionModes(self.problem, known, zeros, self._precision))
 
     def _passed(self, before: Mode, after: Mode, sign: Sign, t: Any, state: Numbers) -> Numbers:
         """Return the state after a switching time."""
@@ -577,10 +574,15 @@ class HybridMotion:
         return (np.abs(as_floats(functions(*at))) <= share * changes)[:, 0]
 
     def _function(self, name: str, sign: Sign, pattern: Pattern) -> Evaluation:
-        what = name, sign.name, frozenset(pattern.items())
+        def build() -> Evaluation:
+            return evaluation(switching_function(self.problem, name, sign.name, pattern), self._precision)
+
+        return self._once((name, sign.name, frozenset(pattern.items())), build)
+
+    def _once(self, what: Hashable, build: Callable[[], Built]) -> Built:
+        """Return the result of `build`, which is known after the first call."""
         if what not in self._functions:
-            program = switching_function(self.problem, name, sign.name, pattern)
-            self._functions[what] = evaluation(program, self._precision)
+            self._functions[what] = build()
         return self._functions[what]
 
     # ---- modes ----

@@ -9,6 +9,7 @@ digits for one motion.
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -42,6 +43,8 @@ class FoundStates(NamedTuple):
 class InitialStates:
     """The initial states of a problem's motions as a function of the open parameters.
 
+    Signs of time have the value just after the initial time. Other signs do not affect constraints, which would jump.
+
     Parameters
     ----------
     problem : MotionProblem
@@ -52,6 +55,81 @@ class InitialStates:
     HolonomError
         The initial state cannot be adapted to the parameters.
     """
+
+    def __init__(self, problem: MotionProblem) -> None:
+        begun = self._problem = at_start(problem)
+        self._start = float(begun.start["t"])
+        self._of: dict[tuple[float, ...], _StatesInPattern] = {}
+        self._in_pattern([1.0] * len(begun.signs))
+        self._clocks = {
+            index: batch_evaluation(begun, computing(begun.switching, {f"switch[{index + 1}]"}))
+            for index, sign in enumerate(begun.signs)
+            if sign.by is DependsOn.TIME
+        }
+
+    def __call__(self, values: Numbers) -> FoundStates:
+        """Return the states for many values of the open parameters, shape (p, k).
+
+        The result of one column of values does not depend on the others.
+        """
+        if not self._problem.signs:
+            return self._in_pattern(())(values)
+        signs, k = self._signs(values), values.shape[1]
+        states, found = np.full((len(self._problem.state), k), np.nan), np.zeros(k, dtype=bool)
+        for pattern in np.unique(signs, axis=1).T:
+            here = (signs == pattern[:, None]).all(axis=0)
+            states[:, here], found[here] = self._in_pattern(pattern)(values[:, here])
+        return FoundStates(states, found)
+
+    def changes(self, values: Numbers, states: Numbers) -> tuple[Correction | None, Correction | None]:
+        """Return the largest correction of a datum, and the largest distance from a guess.
+
+        Parameters
+        ----------
+        values : ndarray, shape (p, 1)
+            Open parameters of one motion.
+        states : ndarray, shape (2n, 1)
+            State for these values.
+
+        Returns
+        -------
+        corrected : Correction or None
+            None without a correction.
+        moved : Correction or None
+            None without a guess.
+        """
+        return self._in_pattern(self._signs(values)[:, 0]).changes(values, states)
+
+    @cached_property
+    def _soon(self) -> float:
+        """A time just after the initial one."""
+        return self._start + SOON * max(nominal_of(self._problem).time, abs(self._start))
+
+    def _in_pattern(self, pattern: Iterable[float]) -> "_StatesInPattern":
+        signs = tuple(map(int, pattern))
+        if signs not in self._of:
+            named = {sign.name: value for sign, value in zip(self._problem.signs, signs, strict=True)}
+            self._of[signs] = _StatesInPattern(problem_in(self._problem, named) if named else self._problem)
+        return self._of[signs]
+
+    def _signs(self, values: Numbers) -> Numbers:
+        """Return the signs at the initial time, shape (signs, k).
+
+        Each function follows those that it may contain.
+        """
+        k, problem = values.shape[1], self._problem
+        signs, unused, inputs = np.ones((len(problem.signs), k)), np.zeros((len(problem.state), k)), Inputs(problem)
+        for index, clock in self._clocks.items():
+            now, soon = (
+                clock(inputs(time, unused, signs=signs, values=values))[0] for time in (self._start, self._soon)
+            )
+            has_sign = np.abs(now) * SOON > ROUNDING * np.abs(soon - now)  # relative to its change in this time
+            signs[index] = np.where(np.where(has_sign, now, soon) >= 0, 1.0, -1.0)
+        return signs
+
+
+class _StatesInPattern:
+    """The initial states of motions with one pattern of signs."""
 
     def __init__(self, problem: MotionProblem) -> None:
         start = problem.initial.parametric
@@ -74,17 +152,6 @@ class InitialStates:
         ]
 
     def __call__(self, values: Numbers) -> FoundStates:
-        """Return the states for many values of the open parameters.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, k)
-
-        Returns
-        -------
-        FoundStates
-            The result of one column of values does not depend on the others.
-        """
         states, found = self._evaluate(values), np.ones(values.shape[1], dtype=bool)
         with np.errstate(all="ignore"):
             for group in self._groups:
@@ -99,42 +166,12 @@ class InitialStates:
                 found &= residual <= LIMITED_DIGITS
         return FoundStates(states, found & np.isfinite(states).all(axis=0))
 
-    def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the most corrected datum of one motion's state, and its correction.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, 1)
-            Open parameters of one motion.
-        states : ndarray, shape (2n, 1)
-            State for these values.
-
-        Returns
-        -------
-        (str, str) or None
-            Name and size of the correction, or None without a correction.
-        """
-        name, size, now = self._largest_change(Origin.GIVEN, values, states)
-        nominal = self._nominal.state[list(self._origins).index(name)] if name else 1.0
-        return (name, f"{size:.2g}") if size > ROUNDING * max(nominal, abs(now)) else None
-
-    def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the value of a state that differs most from its guess.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, 1)
-            Open parameters of one motion.
-        states : ndarray, shape (2n, 1)
-            State for these values.
-
-        Returns
-        -------
-        (str, str) or None
-            Name and difference, or None without a guess.
-        """
-        name, size, _ = self._largest_change(Origin.NEAR, values, states)
-        return (name, f"{size:.3g}") if name else None
+    def changes(self, values: Numbers, states: Numbers) -> tuple[Correction | None, Correction | None]:
+        given, size, now = self._largest_change(Origin.GIVEN, values, states)
+        nominal = self._nominal.state[list(self._origins).index(given)] if given else 1.0
+        corrected = Correction(given, f"{size:.2g}") if size > ROUNDING * max(nominal, abs(now)) else None
+        near, size, _ = self._largest_change(Origin.NEAR, values, states)
+        return corrected, Correction(near, f"{size:.3g}") if near else None
 
     def _largest_change(self, origin: Origin, values: Numbers, states: Numbers) -> tuple[str, float, float]:
         """Return the name, the change and the value of an origin's most changed value."""
@@ -179,96 +216,6 @@ class InitialStates:
             return least_step(None if only else at.mass, at.jacobian, at.residual, self._redundant)
 
         return NearestRoots(linearize, correct, self._nominal.state[places])
-
-
-class InitialStatesBySign:
-    """The initial states of a motion with signs.
-
-    Signs of time have the value just after the initial time. Other signs do not affect constraints, which would jump.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With open parameters and signs.
-
-    Raises
-    ------
-    HolonomError
-        The initial state cannot be adapted to the parameters.
-    """
-
-    def __init__(self, problem: MotionProblem) -> None:
-        self._problem, self._start = problem, float(problem.start["t"])
-        self._time = nominal_of(problem).time
-        self._of: dict[tuple[float, ...], InitialStates] = {}
-        self._in_pattern([1.0] * len(problem.signs))
-        self._clocks = {
-            index: batch_evaluation(problem, computing(problem.switching, {f"switch[{index + 1}]"}))
-            for index, sign in enumerate(problem.signs)
-            if sign.by is DependsOn.TIME
-        }
-
-    def __call__(self, values: Numbers) -> FoundStates:
-        """As `InitialStates`."""
-        signs, k = self._signs(values), values.shape[1]
-        states, found = np.full((len(self._problem.state), k), np.nan), np.zeros(k, dtype=bool)
-        for pattern in np.unique(signs, axis=1).T:
-            here = (signs == pattern[:, None]).all(axis=0)
-            states[:, here], found[here] = self._in_pattern(pattern)(values[:, here])
-        return FoundStates(states, found)
-
-    def correction(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the most corrected datum (see `InitialStates.correction`)."""
-        return self._in_pattern(self._signs(values)[:, 0]).correction(values, states)
-
-    def moved(self, values: Numbers, states: Numbers) -> tuple[str, str] | None:
-        """Return the value farthest from its guess (see `InitialStates.moved`)."""
-        return self._in_pattern(self._signs(values)[:, 0]).moved(values, states)
-
-    def _in_pattern(self, pattern: Iterable[float]) -> InitialStates:
-        signs = tuple(map(int, pattern))
-        if signs not in self._of:
-            named = {sign.name: value for sign, value in zip(self._problem.signs, signs, strict=True)}
-            self._of[signs] = InitialStates(problem_in(self._problem, named))
-        return self._of[signs]
-
-    def _signs(self, values: Numbers) -> Numbers:
-        """Return the signs at the initial time, shape (signs, k).
-
-        Each function follows those that it may contain.
-        """
-        k, problem = values.shape[1], self._problem
-        signs, unused, inputs = np.ones((len(problem.signs), k)), np.zeros((len(problem.state), k)), Inputs(problem)
-        scale = max(self._time, abs(self._start))
-        for index, clock in self._clocks.items():
-            now, soon = (
-                clock(inputs(time, unused, signs=signs, values=values))[0]
-                for time in (self._start, self._start + SOON * scale)
-            )
-            has_sign = np.abs(now) * SOON > ROUNDING * np.abs(soon - now)  # relative to its change in this time
-            signs[index] = np.where(np.where(has_sign, now, soon) >= 0, 1.0, -1.0)
-        return signs
-
-
-def initial_states_of(problem: MotionProblem) -> InitialStates | InitialStatesBySign:
-    """Return the initial states of a problem's motions.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With open parameters.
-
-    Returns
-    -------
-    InitialStates or InitialStatesBySign
-
-    Raises
-    ------
-    HolonomError
-        The initial state cannot be adapted to the parameters.
-    """
-    begun = at_start(problem)
-    return InitialStatesBySign(begun) if begun.signs else InitialStates(begun)
 
 
 class _Group:
@@ -319,15 +266,14 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
     numbers = np.array([[float(complete[name])] for name in problem.parameters])
-    initial_states = initial_states_of(problem)
+    initial_states = InitialStates(problem)
     starts = initial_states(numbers)
     if not starts.found[0]:
         raise HolonomError(
             ErrorKind.NO_INITIAL_STATE, problem.scene, translatable("no state satisfies the constraints")
         )
     found = started(problem, complete, starts.states[:, 0])
-    told = (of(numbers, starts.states) for of in (initial_states.correction, initial_states.moved))
-    correction, moved = (change and Correction(*change) for change in told)
+    correction, moved = initial_states.changes(numbers, starts.states)
     initial = replace(problem.initial, correction=correction, moved=moved or problem.initial.moved)
     return replace(found, initial=initial)
 

@@ -1,6 +1,6 @@
 """A mode of a motion: the smooth motion of one pattern of signs."""
 
-from collections.abc import Collection, Hashable, Iterator, Mapping
+from collections.abc import Hashable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -50,35 +50,28 @@ class SwitchingFunctions(SignedFunctions):
     Signs whose changes are known beforehand have none.
     """
 
-    def __init__(
-        self,
-        problem: MotionProblem,
-        pattern: Pattern,
-        precision: Precision,
-        span: float,
-        known: Collection[str],
-        rounding: Mapping[str, float],
-        friction: FrictionModes | None,
-    ) -> None:
-        super().__init__(precision, span)
+    def __init__(self, mode: "Mode") -> None:
+        super().__init__(mode.precision, mode.span)
+        problem, pattern, precision = mode.whole, mode.pattern, mode.precision
         self._inputs = Inputs(problem, precision)
         for sign in problem.signs:
             value = pattern[sign.name]
-            if sign.name not in known and value not in STUCK:
+            if sign.name not in mode.time_events and value not in STUCK:
                 self._rows += [(sign.name, to, -to) for to in ((1, -1) if value == SLIDING else (-value,))]
         names = list(dict.fromkeys(name for name, *_ in self._rows))
         self._of_rows = [names.index(name) for name, *_ in self._rows]
         self._constants = precision.numbers([pattern[name] == SLIDING for name, *_ in self._rows])[:, None]
         self._slopes = precision.numbers([-to for _, to, _ in self._rows])[:, None]
+        rounding = mode.reactions_of_rounding
         self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
-        what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(known)
+        what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(mode.time_events)
 
         def compiled() -> Evaluation | None:
             return evaluation(switching_functions(problem, pattern, names), precision) if names else None
 
         self._function = problem.once(what, problem.switching, compiled)
-        self._friction = friction
-        self._rows += [(UNIQUE, 0, 1)] * (friction.count if friction else 0)
+        self._friction = mode.friction
+        self._rows += [(UNIQUE, 0, 1)] * (mode.friction.count if mode.friction else 0)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the switching functions (see `SignedFunctions.values`)."""
@@ -116,8 +109,8 @@ class Mode:
         known: dict[Hashable, MotionProblem],
         friction: FrictionModes | None,
     ) -> None:
-        self._friction = friction
-        self.whole, self.pattern, self._precision, self._time_events = problem, pattern, precision, time_events
+        self.whole, self.pattern, self.precision = problem, pattern, precision
+        self.time_events, self.friction = time_events, friction
         analytic = problem_in(problem, pattern)
         if any(sign.by is DependsOn.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
@@ -130,6 +123,7 @@ class Mode:
         dense = None if problem.signs or problem.tables else dense
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
+        self.span = self._end - self._start
         self._vanishing = vanishing_times(self.problem, self.matrices, laws_of(problem), self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         until = min([self._end, *to_come])
@@ -144,7 +138,7 @@ class Mode:
         """Return the dependence of switching functions of time, but of time events."""
         whole = self.whole
         signs = {f"switch[{i}]": sign for i, sign in enumerate(whole.signs, 1) if sign.by is DependsOn.TIME}
-        names = {output for output, sign in signs.items() if sign.name not in self._time_events}
+        names = {output for output, sign in signs.items() if sign.name not in self.time_events}
         if not names:
             return TimeDependence()
         functions = program_in(whole, computing(whole.switching, names), self.pattern)
@@ -154,19 +148,10 @@ class Mode:
     @cached_property
     def switching_functions(self) -> SwitchingFunctions:
         """The switching surfaces on which the pattern ends."""
-        span = self._end - self._start
-        return SwitchingFunctions(
-            self.whole,
-            self.pattern,
-            self._precision,
-            span,
-            self._time_events,
-            self._reactions_of_rounding,
-            self._friction,
-        )
+        return SwitchingFunctions(self)
 
     @property
-    def _reactions_of_rounding(self) -> Mapping[str, float]:
+    def reactions_of_rounding(self) -> Mapping[str, float]:
         """By the names of signs, multipliers so small that rounding decides about them."""
         sizes = self._reaction_sizes() if self.whole.reacting else {}
         return {sign.name: FREE * sizes[sign.of] for sign in self.whole.signs if sign.by is DependsOn.REACTION}
@@ -203,8 +188,8 @@ class Mode:
         -------
         ndarray, shape (n,)
         """
-        momenta = evaluation_once(self.whole, self.momentum_program, self._precision)
-        return as_floats(momenta(Inputs(self.whole, self._precision)(t, state)))
+        momenta = evaluation_once(self.whole, self.momentum_program, self.precision)
+        return as_floats(momenta(Inputs(self.whole, self.precision)(t, state)))
 
     def controls(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the observed controls.
@@ -233,7 +218,7 @@ class Mode:
 
     @cached_property
     def _controls(self) -> Evaluation:
-        return evaluation_once(self.problem, self.problem.controls, self._precision)
+        return evaluation_once(self.problem, self.problem.controls, self.precision)
 
     def outputs(self, times: Numbers, states: Numbers, solutions: Solutions) -> Numbers:
         """Return the outputs of the scene.
@@ -265,7 +250,7 @@ class Mode:
 
     @cached_property
     def _outputs(self) -> Evaluation:
-        return evaluation_once(self.problem, self.problem.outputs, self._precision)
+        return evaluation_once(self.problem, self.problem.outputs, self.precision)
 
     def settled(self, t: Any, state: Numbers) -> Numbers:
         """Return the nearest state that satisfies the constraints.
@@ -290,7 +275,7 @@ class Mode:
 
     @cached_property
     def _projection(self) -> ProgramProjection:
-        return ProgramProjection(self.problem, self._precision)
+        return ProgramProjection(self.problem, self.precision)
 
     def integrate(self, until: Any) -> Iterator[Step]:
         """Integrate until the controls of servo-constraints have no values.
@@ -324,7 +309,7 @@ class Mode:
     def _control_matrix(self) -> ControlMatrix | None:
         if not controls_may_fail(self.problem):
             return None
-        return ControlMatrix(self.problem, self._precision, self._end - self._start)
+        return ControlMatrix(self.problem, self.precision, self.span)
 
     def require_way_on(self, until: Any) -> None:
         """Reject a vanishing constraint gradient or a nonsmooth expression of time.

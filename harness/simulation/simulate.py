@@ -112,7 +112,7 @@ def integrate(
     """
     with one_blas_thread(), np.errstate(all="ignore"):  # numbers that leave their range are rejected in the report
         _require_steps(problem, request)
-        parametrized = parametrized_problem(problem, request)
+        parametrized = _parametrized_problem(problem, request)
         _require_derivatives(problem, parametrized, request)
         end, ending = _end_of(problem, request)
         with doing("compiling the motion"):
@@ -156,7 +156,7 @@ def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, En
         return end, None
     with (
         doing("looking for the end of the motion"),
-        closing(HybridMotion(parametrized_problem(problem, request), request, precision, end)) as motion,
+        closing(HybridMotion(_parametrized_problem(problem, request), request, precision, end)) as motion,
     ):
         event = first_event(motion, precision, end)
     if event is None:
@@ -164,22 +164,11 @@ def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, En
     return event.t, Ending(problem.ends.until, event.name)
 
 
-def parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
+def _parametrized_problem(problem: MotionProblem, request: SimulationRequest) -> MotionProblem:
     """Return the motion with open parameters if possible, else with their values.
 
     Engines of double precision take open parameters, with projection or without stabilization. They are compiled once
     for all values.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With open parameters.
-    request : SimulationRequest
-        Numbers, engine and stabilization.
-
-    Returns
-    -------
-    MotionProblem
     """
     open_ = (
         request.precision == "double"
@@ -238,7 +227,7 @@ class _Simulation:
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")
         self.recording = Recording(self.begun, self._wanted_times(), zero, self._process)
-        self.energy_statistics = EnergyStatistics()
+        self.energy_statistics = _EnergyStatistics()
         self.reactions = np.zeros(len(problem.multipliers))  # the largest multipliers so far
         self.sensitivities = (
             Sensitivities(self.motion.problem, request.sensitivities, self.begun, request.tol, float(self.end))
@@ -482,7 +471,7 @@ def _side_by_side(parts: Sequence[Numbers]) -> Numbers:
     return np.concatenate([rows[:shared] for rows in parts], axis=1)
 
 
-class EnergyStatistics:
+class _EnergyStatistics:
     """The largest change of the energy and its largest error, block by block."""
 
     def __init__(self) -> None:
@@ -490,15 +479,7 @@ class EnergyStatistics:
         self._first: Any = None
 
     def add(self, energy: Numbers, error: Numbers) -> None:
-        """Add samples.
-
-        Parameters
-        ----------
-        energy : ndarray, shape (k,)
-            Energy, in the scene's unit.
-        error : ndarray, shape (k,)
-            Energy gained beyond the work done.
-        """
+        """Add samples of the energy, and of what was gained beyond the work done."""
         if self._first is None:
             self._first = energy[0]
         self.largest_change = largest(energy - self._first, self.largest_change)

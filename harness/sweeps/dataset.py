@@ -231,7 +231,7 @@ class SweepFolder:
             if resume:
                 raise HolonomError(ErrorKind.NOTHING_TO_RESUME, self.path)
             return
-        there = read_document(self.path)
+        there = _read_document(self.path)
         for name, value in self.document.items():
             if _compared(there.get(name)) != _compared(value):
                 raise HolonomError(
@@ -241,24 +241,8 @@ class SweepFolder:
                 )
 
 
-def read_document(folder: Path) -> dict[str, Any]:
-    """Return the document of a sweep.
-
-    Parameters
-    ----------
-    folder : Path
-        Folder of a sweep.
-
-    Returns
-    -------
-    dict of str to object
-        Content of ``_sweep.json``. See `SweepDocument`.
-
-    Raises
-    ------
-    HolonomError
-        There is none, or it is not such a document.
-    """
+def _read_document(folder: Path) -> dict[str, Any]:
+    """Return the content of ``_sweep.json`` in the folder of a sweep."""
     try:
         document = json.loads((folder / DOCUMENT).read_text(encoding="utf-8"))
     except (OSError, ValueError):

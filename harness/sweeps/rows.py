@@ -26,7 +26,7 @@ from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_ene
 from ..simulation.constraints.directions import or_one
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors
-from ..simulation.initial_state import initial_states_of, started
+from ..simulation.initial_state import InitialStates, started
 from ..simulation.matrices import BatchMatrices
 from ..simulation.nominal import (
     COARSE,
@@ -97,7 +97,7 @@ class RowMaker:
         self.plan = plan
         require_known(problem, [output.quantity for output in plan.outputs if output.quantity is not None])
         _require_smooth(problem, plan.outputs)
-        self._starts, self._start = initial_states_of(problem), float(problem.start["t"])
+        self._starts, self._start = InitialStates(problem), float(problem.start["t"])
         self._derivatives = [output for output in plan.outputs if output.kind is Kind.DERIVATIVE]
         _require_directions(problem, self._derivatives)
         if problem.ends.released or any(output.kind is Kind.RADIUS for output in plan.outputs):

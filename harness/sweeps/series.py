@@ -46,7 +46,7 @@ def batch_radii(problem: MotionProblem, states: Floats, values: Floats) -> Float
     ndarray, shape (k,)
         In the scene's unit of time.
     """
-    series = expanded(problem, states, values)
+    series = _expanded(problem, states, values)
     finite, radii = np.isfinite(series).all(axis=(0, 1)), np.full(states.shape[1], np.nan)
     expanded_names = {*problem.accelerations, *problem.multipliers}
     constants = (*problem.multipliers, *problem.parameters)
@@ -84,22 +84,10 @@ def _rates(powers: NDArray[np.complex128], z: NDArray[np.complex128], order: int
     return powers * falling / z[:, None] ** order
 
 
-def expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
+def _expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:
     """Return power series of the coordinates and multipliers about the initial time.
 
-    Parameters
-    ----------
-    problem : MotionProblem
-        With open parameters, without signs and obstruction.
-    states : ndarray, shape (2n, k)
-        Initial coordinates and velocities.
-    values : ndarray, shape (p, k)
-        Open parameters.
-
-    Returns
-    -------
-    ndarray, shape (n + g, ORDER + 1, k)
-        Coefficients of t - t0, the constants first.
+    Coefficients of t - t0, the constants first, have the shape (n + g, ORDER + 1, k).
     """
     require_expandable(problem)
     integrator = problem.once("expansion", problem.motion, lambda: _expanding(problem))

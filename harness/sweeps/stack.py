@@ -15,42 +15,24 @@ TRIALS = 8  # at each place
 Result = TypeVar("Result")
 
 
-def directly(function: Callable[[], Result]) -> Result:
-    """Call a function.
+def _directly(function: Callable[[], Result]) -> Result:
+    """Call a partial function.
 
-    Parameters
-    ----------
-    function : callable
-        Partial function, since Python calls functions of its own without the stack.
-
-    Returns
-    -------
-    object
-        Its result.
+    Python calls functions of its own without the stack.
     """
     return function()
 
 
-def deeper(function: Callable[[], Result]) -> Result:
+def _deeper(function: Callable[[], Result]) -> Result:
     """Call a function by an iterator.
 
     It moves the stack by half a vector, as measured.
-
-    Parameters
-    ----------
-    function : callable
-        Function to call.
-
-    Returns
-    -------
-    object
-        Its result.
     """
     [found] = starmap(function, [()])
     return found
 
 
-PLACES = (directly, deeper)
+PLACES = (_directly, _deeper)
 
 
 class FastestPlace:

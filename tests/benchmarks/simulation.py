@@ -24,7 +24,7 @@ from simulation_report import write_report
 
 from holonom.benchmark.work_precision.measurement import numbers_of, relative_error
 from holonom.benchmark.work_precision.reference import Reference, find_reference
-from holonom.benchmark.work_precision.runner import times_in_turns, without_caches
+from holonom.benchmark.work_precision.runner import _times_in_turns, without_caches
 from holonom.failures import HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
@@ -169,7 +169,7 @@ def with_turns(settings: Mapping[str, list[Setting]]) -> dict[str, list[Setting]
         for place in range(PLACES)
         if once[name, s.tolerance] < REPEATED
     }
-    for (name, tolerance, _), seconds in times_in_turns(batches).items():
+    for (name, tolerance, _), seconds in _times_in_turns(batches).items():
         once[name, tolerance] = min(once[name, tolerance], seconds)
     return {name: [replace(s, seconds=once[name, s.tolerance]) for s in row] for name, row in settings.items()}
 

@@ -30,7 +30,7 @@ from holonom.sandbox import Limits
 from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.initial_state import at_values
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
-from holonom.simulation.simulate import parametrized_problem
+from holonom.simulation.simulate import _parametrized_problem
 from holonom.sweeps.axes import read_axes
 from holonom.sweeps.outputs import read_quantities
 from holonom.sweeps.request import CHUNK
@@ -156,7 +156,7 @@ def rows_of_other_engines(base: float) -> Iterator[str]:
 
 def engine_seconds(problem: MotionProblem, request: SimulationRequest) -> float:
     precision = read_precision("double")
-    motion = HybridMotion(parametrized_problem(problem, request), request, precision, precision.number("10"))
+    motion = HybridMotion(_parametrized_problem(problem, request), request, precision, precision.number("10"))
     return _processor(lambda: motion.mode.engine.advance(10.0))
 
 

@@ -18,7 +18,7 @@ from holonom.sandbox import Limits
 from holonom.simulation import derivations
 from holonom.simulation.engines import taylor
 from holonom.simulation.engines.engine import Task
-from holonom.simulation.initial_state import InitialStates, at_values, initial_states_of
+from holonom.simulation.initial_state import InitialStates, at_values
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 HANGING = """load("holonom.mac")$
@@ -134,7 +134,7 @@ def test_a_start_without_a_guess_is_followed_from_the_scenes_own(write_scene):
 def test_a_law_in_parts_leaves_the_start_its_first_part(write_scene):
     problem = motion_problem(write_scene(IN_PARTS), Request(), Limits(), open_parameters=("m", "b"))
     values = np.array([[1.0, 2.0, 1.0], [1.0, 5.0, -1.0]])
-    starts = initial_states_of(problem)(values)
+    starts = InitialStates(problem)(values)
     assert starts.found.all()
     assert starts.states[1] == pytest.approx([-0.8, -0.8, -(3.64**0.5)], rel=1e-14)  # u = 1 before b, 2 from it on
     moved = at_values(problem, {"m": Fraction(2), "b": Fraction(5)})

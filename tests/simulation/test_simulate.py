@@ -18,7 +18,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.engines.program_engine import NO_SLOPE
-from holonom.simulation.hard_cases import Difficulty, MotionState, fastest_decay
+from holonom.simulation.hard_cases import Difficulty, MotionState, _fastest_decay
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.result import Report, Simulation
@@ -259,7 +259,7 @@ def test_a_decay_that_holds_back_all_steps_was_a_long_run_alone(c, stiff, write_
     assert report.coordinates["x"] == pytest.approx(truth, rel=1e-8)
     assert (Difficulty.STIFF in report.cases) is stiff
     state = np.array([*report.coordinates.values(), *report.velocities.values()])
-    assert fastest_decay(MotionState(MotionMatrices(motion), 6.0, state)) == pytest.approx(fast, rel=1e-6)
+    assert _fastest_decay(MotionState(MotionMatrices(motion), 6.0, state)) == pytest.approx(fast, rel=1e-6)
 
 
 WALL = """load("holonom.mac")$

@@ -30,5 +30,5 @@ def test_stiffness_is_the_ratio_of_two_pendulums_lengths(write_scene, monkeypatc
     )
     problem = motion_problem(write_scene(PENDULUMS), Request(), Limits())
     at = hard_cases.MotionState(MotionMatrices(problem), *start_of(problem))
-    assert hard_cases.stiffness(at) == pytest.approx(100, rel=1e-6)
+    assert hard_cases._stiffness(at) == pytest.approx(100, rel=1e-6)
     assert len(factored) == 1

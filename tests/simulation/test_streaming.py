@@ -16,7 +16,7 @@ from holonom.simulation import output, recording
 from holonom.simulation.output import require_disk, sample_file, write_samples
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Sampled
-from holonom.simulation.simulate import EnergyStatistics, integrate, simulate
+from holonom.simulation.simulate import _EnergyStatistics, integrate, simulate
 
 SAMPLES = 50
 LARGER = 20e6
@@ -107,7 +107,7 @@ def test_a_sample_takes_no_more_of_the_disk_than_is_stated(lengthening, tmp_path
 
 def test_an_energy_that_is_no_number_is_not_passed_over():
     """Of a larger number and none, max() in Python takes the first."""
-    energy_statistics = EnergyStatistics()
+    energy_statistics = _EnergyStatistics()
     energy_statistics.add(np.array([2.0]), np.array([0.5]))
     energy_statistics.add(np.array([np.nan]), np.array([np.nan]))
     energy_statistics.add(np.array([2.0]), np.array([0.5]))

@@ -3,7 +3,7 @@
 import pytest
 
 from holonom.failures import ErrorKind, HolonomError
-from holonom.sweeps.dataset import DOCUMENT, read_document
+from holonom.sweeps.dataset import DOCUMENT, _read_document
 
 
 @pytest.mark.parametrize("content", [None, b"", b"no json", b"\xff"])
@@ -11,5 +11,5 @@ def test_a_folder_without_a_document_is_named(content, tmp_path):
     if content is not None:
         (tmp_path / DOCUMENT).write_bytes(content)
     with pytest.raises(HolonomError) as caught:
-        read_document(tmp_path)
+        _read_document(tmp_path)
     assert (caught.value.kind, caught.value.place) == (ErrorKind.UNRELATED_FOLDER, str(tmp_path))

@@ -90,19 +90,8 @@ def measure(cases: Iterable[BenchmarkCase], reference: Reference, advance: Calla
     return _with_shortest_times(results, repeated)
 
 
-def times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
-    """Measure short runs: the shortest time of several passes.
-
-    Parameters
-    ----------
-    batches : mapping of Key to Batch
-        Batches of runs, by a key.
-
-    Returns
-    -------
-    dict of Key to float
-        Shortest time of one run, in seconds, by the same key.
-    """
+def _times_in_turns(batches: Mapping[Key, Batch]) -> dict[Key, float]:
+    """Measure short runs: the shortest times of several passes, in seconds."""
     passes = [shortest_times(batches) for _ in range(PASSES)]
     return {key: min(times[key] for times in passes) for key in batches}
 
@@ -139,7 +128,7 @@ def _first_run(case: BenchmarkCase, reference: Reference) -> tuple[Result, Prepa
 
 
 def _with_shortest_times(results: list[Result], repeated: dict[int, Prepared]) -> list[Result]:
-    shortest = times_in_turns({index: python_batch(_run(prepared), ()) for index, prepared in repeated.items()})
+    shortest = _times_in_turns({index: python_batch(_run(prepared), ()) for index, prepared in repeated.items()})
     return [
         replace(result, seconds=min(result.seconds, shortest[index])) if index in shortest else result
         for index, result in enumerate(results)

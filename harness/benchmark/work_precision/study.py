@@ -128,7 +128,7 @@ def study(
     reference = find_reference(problem, times, plan.most_digits)
     series, unexpandable = _series(source, request, expansion, plan, reference)
     with without_caches():
-        results = measure(benchmark_cases(problems, until, expansion, plan), reference, advance)
+        results = measure(_benchmark_cases(problems, until, expansion, plan), reference, advance)
     measurements = [*series, *(r for r in results if isinstance(r, Measurement))]
     omissions = [*unsolved, *unexpanded, *unexpandable, *beyond, *(r for r in results if isinstance(r, Omission))]
     return Study(
@@ -222,26 +222,10 @@ def _series(
     return measurements, omissions
 
 
-def benchmark_cases(
+def _benchmark_cases(
     problems: Sequence[MotionProblem], until: Fraction, expansion: Expansion | None, plan: Plan
 ) -> Iterator[BenchmarkCase]:
-    """Yield each method at each of its settings, Maxima's series left out.
-
-    Parameters
-    ----------
-    problems : sequence of MotionProblem
-        The motion by each solve.
-    until : Fraction
-        Final time, in the scene's unit.
-    expansion : Expansion or None
-        Motion and time of the series, or None without any.
-    plan : Plan
-        Settings of the methods.
-
-    Yields
-    ------
-    BenchmarkCase
-    """
+    """Yield each method at each of its settings, Maxima's series left out."""
     if expansion:
         yield from double_series(expansion, plan.orders)
     for group, method, tolerances, prepare in _methods(problems, until, plan):

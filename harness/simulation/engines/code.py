@@ -115,29 +115,12 @@ def is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: 
     -------
     bool
     """
-    gained = running(code, operations, steps, tol) - running(better, operations, steps, tol)
-    return gained > compilation(better, operations)
+    gained = _running(code, operations, steps, tol) - _running(better, operations, steps, tol)
+    return gained > _compilation(better, operations)
 
 
-def running(code: Code, operations: int, steps: float, tol: float) -> float:
-    """Return the expected time of steps of a motion program.
-
-    Parameters
-    ----------
-    code : Code
-        How the program is compiled.
-    operations : int
-        Operations of one evaluation of the accelerations.
-    steps : float
-        Number of steps.
-    tol : float
-        Tolerance of a step.
-
-    Returns
-    -------
-    float
-        In seconds.
-    """
+def _running(code: Code, operations: int, steps: float, tol: float) -> float:
+    """Return the expected seconds of steps of a motion program."""
     quick = OPERATION * operations * (_order(tol) / _order(REFERENCE)) ** ORDERS
     return steps * (STEP + SHARE[code] * quick)
 
@@ -160,27 +143,14 @@ def expected_seconds(operations: int, steps: float, tol: float) -> float:
         In seconds, without the first compilation.
     """
     first, *better = codes_for(operations, read_precision("double"))
-    compiled = accumulate(better, lambda spent, code: spent + compilation(code, operations), initial=0.0)
+    compiled = accumulate(better, lambda spent, code: spent + _compilation(code, operations), initial=0.0)
     return min(
-        spent + running(code, operations, steps, tol) for spent, code in zip(compiled, (first, *better), strict=True)
+        spent + _running(code, operations, steps, tol) for spent, code in zip(compiled, (first, *better), strict=True)
     )
 
 
-def compilation(code: Code, operations: int) -> float:
-    """Return the expected time of compilation in a better code.
-
-    Parameters
-    ----------
-    code : Code
-        A better one than ``QUICK``.
-    operations : int
-        Operations of one evaluation of the accelerations.
-
-    Returns
-    -------
-    float
-        In seconds.
-    """
+def _compilation(code: Code, operations: int) -> float:
+    """Return the expected seconds of compilation in a better code than ``QUICK``."""
     match code:
         case Code.PLAIN:
             return 7e-4 * operations

@@ -239,32 +239,20 @@ class _DormandPrince(ctypes.Structure):
         times, dense = times[: taken[3] + 1], dense[: taken[3], ..., None]
         block = Block(times.tolist(), partial(_states_in, times, dense))
         steps = zip(pairwise(block.times), dense, strict=True)
-        return taken, [Step(*ends, partial(states_of, *ends, rows), block=block) for ends, rows in steps]
+        return taken, [Step(*ends, partial(_states_of, *ends, rows), block=block) for ends, rows in steps]
 
 
 def _states_in(ends: Floats, dense: Floats, times: Floats) -> Floats:
     """Return states at times of steps between the ends, shape (2n, k)."""
     place = np.searchsorted(ends[1:-1], times)
-    return states_of(ends[place], ends[place + 1], np.moveaxis(dense[place, ..., 0], 0, -1), times)
+    return _states_of(ends[place], ends[place + 1], np.moveaxis(dense[place, ..., 0], 0, -1), times)
 
 
-def states_of(start: float | Floats, end: float | Floats, rows: Floats, times: Floats) -> Floats:
+def _states_of(start: float | Floats, end: float | Floats, rows: Floats, times: Floats) -> Floats:
     """Return states at times of a step, or of a step each, by the dense output.
 
-    Its order is 7 (Hairer, Norsett & Wanner I, section II.6).
-
-    Parameters
-    ----------
-    start, end : float, or ndarray of shape (k,)
-        Times of the step.
-    rows : ndarray, shape (8, 2n, 1) or (8, 2n, k)
-        State at the initial time, and coefficients of products of x and 1 - x in turn.
-    times : ndarray, shape (k,)
-        Times of the step.
-
-    Returns
-    -------
-    ndarray, shape (2n, k)
+    Its order is 7 (Hairer, Norsett & Wanner I, section II.6). Rows have the shape (8, 2n, 1) or (8, 2n, k): the state
+    at the initial time, and coefficients of products of x and 1 - x in turn.
     """
     x = (times - start) / (end - start)
     states = np.zeros((rows.shape[1], len(times)))

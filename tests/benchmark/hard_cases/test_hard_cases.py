@@ -6,7 +6,7 @@ from holonom.explanations import ADVICE, advice, notes
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.hard_cases import Difficulty, MotionState, stiffness
+from holonom.simulation.hard_cases import Difficulty, MotionState, _stiffness
 from holonom.simulation.matrices import MotionMatrices, start_of
 from holonom.simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -79,4 +79,4 @@ def test_a_plain_pendulum_needs_no_advice(write_scene):
 def test_stiffness_is_the_ratio_of_two_springs(write_scene, ratio):
     springs = SOMEBODYS[Difficulty.STIFF] | {"potential_energy": f"x^2/2 + {ratio}*y^2/2"}
     problem = motion_problem(write_scene(SCENE.format(**PENDULUM | springs)), Request(), Limits())
-    assert stiffness(MotionState(MotionMatrices(problem), *start_of(problem))) == pytest.approx(ratio, rel=1e-6)
+    assert _stiffness(MotionState(MotionMatrices(problem), *start_of(problem))) == pytest.approx(ratio, rel=1e-6)

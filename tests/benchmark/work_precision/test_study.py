@@ -16,7 +16,7 @@ from holonom.benchmark.work_precision.reference import find_reference
 from holonom.benchmark.work_precision.runner import measure
 from holonom.benchmark.work_precision.series import expansion_of
 from holonom.benchmark.work_precision.solvers import SOLVERS
-from holonom.benchmark.work_precision.study import Plan, benchmark_cases, study
+from holonom.benchmark.work_precision.study import Plan, _benchmark_cases, study
 from holonom.document_types import schema
 from holonom.failures import ErrorKind
 from holonom.figures.benchmark import study_figure
@@ -84,7 +84,7 @@ def test_the_reference_is_confirmed_by_another_order_and_precision(reference):
 @pytest.mark.usefixtures("c_compiler")
 def test_what_the_table_states_is_the_distance_from_the_closed_form(problems, reference):
     plan = Plan(tolerances={"double": (1e-9,), "30": (1e-20,)}, solver_tolerances=(1e-6,), orders=SHORT.orders)
-    cases = list(benchmark_cases(problems, UNTIL, expansion_of(problems[0], UNTIL), plan))
+    cases = list(_benchmark_cases(problems, UNTIL, expansion_of(problems[0], UNTIL), plan))
     results = measure(cases, reference, lambda: None)
     for case, result in zip(cases, results, strict=True):
         prepared = case.prepare()

@@ -9,7 +9,7 @@ from problems import problem
 
 from holonom.simulation.engines import fallback, runge_kutta
 from holonom.simulation.engines.choice import Choice, quicker_engine
-from holonom.simulation.engines.code import Code, compilation
+from holonom.simulation.engines.code import Code, _compilation
 from holonom.simulation.engines.runge_kutta import FINEST, RungeKuttaEngine
 from holonom.simulation.request import EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -110,7 +110,7 @@ def test_runge_kutta_is_relieved_at_dead_centres_like_taylor(monkeypatch):
 
 def test_compact_code_is_compiled_in_a_time_that_grows_as_the_program_and_better_code_as_its_square():
     def growth(code):
-        times = [compilation(code, operations) for operations in (0, 1000, 2000)]
+        times = [_compilation(code, operations) for operations in (0, 1000, 2000)]
         return (times[2] - times[0]) / (times[1] - times[0])
 
     assert (growth(Code.COMPACT), growth(Code.UNROLLED)) == (pytest.approx(2), pytest.approx(4))

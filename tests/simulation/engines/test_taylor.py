@@ -14,7 +14,7 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
-from holonom.simulation.engines.code import Code, codes_for, is_worthwhile, running
+from holonom.simulation.engines.code import Code, _running, codes_for, is_worthwhile
 from holonom.simulation.engines.engine import Task
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest, Stabilization
@@ -30,10 +30,10 @@ def test_better_code_for_long_runs():
     long = TaylorEngine(Task.of(problem("pendulum.mac", "swing_scene")))
     long.advance(100_000.0)
     assert long.code is Code.UNROLLED
-    second = 1 / running(Code.QUICK, 20, 1, 1e-9)  # steps
+    second = 1 / _running(Code.QUICK, 20, 1, 1e-9)  # steps
     assert not is_worthwhile(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
     assert is_worthwhile(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
-    assert not is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
+    assert not is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / _running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
     double = read_precision("double")
     assert codes_for(200, double) == (Code.QUICK, Code.PLAIN, Code.UNROLLED)
     assert codes_for(2000, double) == (Code.QUICK, Code.COMPACT)
@@ -43,7 +43,7 @@ def test_better_code_for_long_runs():
 @pytest.mark.parametrize("seconds", [0.0, 1e3])
 def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
     """Truth: the same code and the same bits on a machine that is so busy, or so idle, that a clock goes mad."""
-    monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
+    monkeypatch.setattr(code, "_compilation", lambda better, operations: 1e-3)
     swing, wanted = problem("pendulum.mac", "swing_scene"), SimulationRequest(until=Fraction(2000), samples=0)
     truth = simulate(swing, wanted).report
     clock = count()
@@ -55,7 +55,7 @@ def test_the_clock_decided_which_code_computes(monkeypatch, seconds):
 
 def test_a_run_with_many_stops_uses_the_code_that_is_quickly_compiled(monkeypatch, write_scene):
     """Each point of a table is a stop, and began a count of its own."""
-    monkeypatch.setattr(code, "compilation", lambda better, operations: 1e-3)
+    monkeypatch.setattr(code, "_compilation", lambda better, operations: 1e-3)
     points = ", ".join(f"[{t}, 1]" for t in range(201))
     scene = f"""load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
