@@ -95,21 +95,8 @@ class EnergyBalance:
         """
         return self._output("energy", times, states, None)
 
-    def power(self, times: Numbers, states: Numbers) -> Numbers:
-        """Return the power of non-conservative forces and controls at states.
-
-        Parameters
-        ----------
-        times : ndarray, shape (k,)
-            Times of the states.
-        states : ndarray, shape (2n, k)
-            Coordinates, then velocities.
-
-        Returns
-        -------
-        ndarray, shape (k,)
-            Power, in the scene's unit.
-        """
+    def _power(self, times: Numbers, states: Numbers) -> Numbers:
+        """Return the power of non-conservative forces and controls at states."""
         return self._output(
             "power", times, states, self._multipliers(times, states) if self._with_multipliers else None
         )
@@ -173,7 +160,7 @@ class EnergyBalance:
         Gauss's quadrature is exact for twice as many coefficients as there are points.
         """
         times = self.times_between([start], [end])
-        power = self.power(times, np.repeat(state, len(times), axis=1))
+        power = self._power(times, np.repeat(state, len(times), axis=1))
         sizes = np.abs(as_floats((self._to_coefficients * power).sum(axis=1)))
         rounding = 10.0**-self._precision.sure_digits * self._size / float(end - start)
         enough = np.max(sizes[-LAST:]) <= max(10.0 ** (-self._precision.sure_digits / 2) * np.max(sizes), rounding)
@@ -214,7 +201,7 @@ class EnergyBalance:
         if self.conservative:
             return zeros(self._precision, len(starts)), 0.0
         times, states = (np.concatenate(each, axis=-1) for each in zip(*between, strict=True))
-        power = self.power(times, states).reshape(len(starts), -1)
+        power = self._power(times, states).reshape(len(starts), -1)
         parts = ((ends - starts) / 2)[:, None] * (power * self._quadrature[1])
         return parts.sum(axis=1), float(np.max(np.abs(as_floats(np.cumsum(parts, axis=1))), initial=0.0))
 

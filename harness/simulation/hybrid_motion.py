@@ -37,7 +37,7 @@ from .accuracy_check import has_root_of
 from .branch_points import last_step, real_state
 from .constraints.factorization import factored_constraints
 from .control_matrix import controls_may_fail
-from .engines.engine import Step
+from .engines.engine import Step, advance
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
 from .events import Events, Values, values_in
@@ -180,34 +180,15 @@ class HybridMotion:
         for mode in self._modes.values():
             mode.engine.close()
 
-    def advance(self, until: Any) -> None:
-        """Integrate to a time.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Raises
-        ------
-        HolonomError
-            The motion cannot be continued so far.
-        """
-        if self.problem.switching or self.problem.ends.released or controls_may_fail(self.problem):
-            deque(self.integrate(until), maxlen=0)
-            return
-        while self.time != until:
-            self.mode.engine.advance(self._next_stop(until))
-            self._pass_knots()
-            self.mode.require_way_on(until)
-
-    def integrate(self, until: Any) -> Iterator[Step]:
+    def integrate(self, until: Any, dense: bool = True) -> Iterator[Step]:
         """Integrate to a time and yield each step with its mode.
 
         Parameters
         ----------
         until : number
             Last time.
+        dense : bool
+            False if the steps are not needed. Those of a single mode are not yielded then.
 
         Yields
         ------
@@ -216,19 +197,15 @@ class HybridMotion:
         Raises
         ------
         HolonomError
-            As `advance`.
+            The motion cannot be continued so far.
         """
+        looked_at = dense or self.problem.switching or self.problem.ends.released or controls_may_fail(self.problem)
         while self.time != until:
-            for step in self._to_stop(self._next_stop(until)):
-                release = self._first_release(step)
-                if release is not None:
-                    step = step._replace(end=release.t)
-                if step.start != step.end:
-                    yield step._replace(impulse=self._impulse)
-                    self._impulse = self._zero
-                if release is not None:
-                    self._release(release, step)
-                    break
+            stop = self._next_stop(until)
+            if looked_at:
+                yield from self._to_release(stop)
+            else:
+                advance(self.mode.engine, stop)
             self._pass_knots()
             self.mode.require_way_on(until)
 
@@ -246,6 +223,19 @@ class HybridMotion:
         while self._knots and self._knots[-1][0] <= self.time != self._end:
             t, exact = self._knots.pop()
             self.switchings.append(Switching(float(t), function_of_knot(exact), EventOutcome.CROSSED))
+
+    def _to_release(self, stop: Any) -> Iterator[Step]:
+        """Yield steps to a stop, or to the first release before it."""
+        for step in self._to_stop(stop):
+            release = self._first_release(step)
+            if release is not None:
+                step = step._replace(end=release.t)
+            if step.start != step.end:
+                yield step._replace(impulse=self._impulse)
+                self._impulse = self._zero
+            if release is not None:
+                self._release(release, step)
+                break
 
     def _to_stop(self, stop: Any) -> Iterator[Step]:
         mode = self.mode

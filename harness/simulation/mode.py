@@ -23,7 +23,7 @@ from ..program.sign_pattern import (
 )
 from .constraints.program_projection import ProgramProjection
 from .constraints.projection import settle
-from .constraints.singularity import laws_of, no_controls, require_gradient, shortly_before, vanishing_times
+from .constraints.singularity import VanishingGradients, laws_of, no_controls
 from .control_matrix import ControlMatrix, controls_may_fail
 from .energy import EnergyBalance
 from .engines.engine import Solutions, Step, Task
@@ -124,15 +124,14 @@ class Mode:
         self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.span = self._end - self._start
-        self._vanishing = vanishing_times(self.problem, self.matrices, laws_of(problem), self._end)
+        self._gradients = VanishingGradients(self.problem, self.matrices, laws_of(problem), self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         until = min([self._end, *to_come])
         self.by_time = time_dependence(
             program_with_values(self.problem, self.problem.matrices), self._start, until, self.problem.tables
         ).ended_by(self._dependence_of_signs(until))
         ends = () if self.by_time.end is None else (self.by_time.end,)
-        before = (shortly_before(t, self._start) for t in self._vanishing)
-        self.stops = sorted({*self.by_time.stops, *ends, *before})
+        self.stops = sorted({*self.by_time.stops, *ends, *self._gradients.stops})
 
     def _dependence_of_signs(self, until: float) -> TimeDependence:
         """Return the dependence of switching functions of time, but of time events."""
@@ -327,9 +326,8 @@ class Mode:
         now = self.engine.time
         if self.by_time.end is not None and float(now) >= self.by_time.end and now != until:
             raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(self.by_time.end, self.by_time.reason))
-        for t in self._vanishing:
-            if shortly_before(t, self._start) == float(now):
-                require_gradient(self.problem, t, MotionState(self.matrices, float(now), as_floats(self.engine.state)))
+        if float(now) in self._gradients.stops:
+            self._gradients.require(float(now), as_floats(self.engine.state))
 
     def energy_at(self, t: Any, state: Numbers) -> Any:
         """Return the energy at one state.

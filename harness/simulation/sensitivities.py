@@ -29,7 +29,7 @@ from ..program.motion_problem import MotionProblem, Sign
 from ..program.motion_program import Program
 from ..program.precision import read_precision
 from ..program.sign_pattern import problem_in, switching_function
-from .engines.code import better_code, codes_for, is_worthwhile
+from .engines.code import codes_for, worthwhile_code
 from .engines.engine import Step
 from .engines.taylor import states_of
 from .evaluation import Numbers
@@ -218,9 +218,8 @@ class _ModeVariation:
         return np.array([t]), state[:, None], moves[:, :, None]
 
     def _compile_if_worthwhile(self, steps: float) -> None:
-        operations = self.variation.program.operations
-        better = better_code(self._code, operations, DOUBLE)
-        if better and is_worthwhile(self._code, better, operations, steps, self._integrator.tol):
+        asked = self.variation.program.operations, DOUBLE, steps, self._integrator.tol
+        if better := worthwhile_code(self._code, *asked):
             self._code = better
             self._integrator = self._compiled()
 

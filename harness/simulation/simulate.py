@@ -282,10 +282,9 @@ class _Simulation:
         return solutions._replace(multipliers=np.array(rows).reshape(len(rows), len(none)))
 
     def _integrate(self, take: TakeStep | None) -> None:
-        if take is None:
-            return self.motion.advance(self.end)
-        for step in self.motion.integrate(self.end):
-            take(step)
+        for step in self.motion.integrate(self.end, dense=take is not None):
+            if take is not None:
+                take(step)
 
     def _wanted_times(self) -> Iterator[Any] | None:
         """Return the times to record, or None for the times of the steps.

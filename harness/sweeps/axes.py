@@ -52,18 +52,8 @@ class Grid:
     count: int
     text: str  # how they were requested
 
-    def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the numbers at some places, from zero.
-
-        Parameters
-        ----------
-        places : ndarray of int, shape (k,)
-            Positions of the numbers, from zero.
-
-        Returns
-        -------
-        ndarray, shape (k,)
-        """
+    def _at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
+        """Return the numbers at some places, from zero."""
         inside = self.first + places * ((self.last - self.first) / max(1, self.count - 1))
         return np.where((places == self.count - 1) & (places > 0), self.last, inside)
 
@@ -81,8 +71,7 @@ class Listed:
         """Number of values."""
         return len(self.numbers)
 
-    def at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
-        """Return the numbers at some places (see `Grid.at`)."""
+    def _at(self, places: NDArray[np.intp]) -> NDArray[np.float64]:
         return np.array(self.numbers)[places]
 
 
@@ -99,20 +88,7 @@ class Sample:
     second: float
     text: str  # how they were requested
 
-    def draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
-        """Draw random numbers from the distribution.
-
-        Parameters
-        ----------
-        generator : Generator
-            Source of random numbers.
-        count : int
-            Number of random numbers.
-
-        Returns
-        -------
-        ndarray, shape (count,)
-        """
+    def _draw(self, generator: np.random.Generator, count: int) -> NDArray[np.float64]:
         match self.distribution:
             case Distribution.NORMAL:
                 return generator.normal(self.first, self.second, count)
@@ -155,13 +131,13 @@ class Axes:
         """
         rows = np.arange(first, last)
         member, *places = np.unravel_index(rows, (self.size, *(axis.count for axis in self.values)))
-        chosen = [axis.at(place) for axis, place in zip(self.values, places, strict=True)]
+        chosen = [axis._at(place) for axis, place in zip(self.values, places, strict=True)]
         drawn = [self._drawn(place, axis, member) for place, axis in enumerate(self.samples)]
         return np.array([*chosen, *drawn])
 
     def _drawn(self, place: int, axis: Sample, members: NDArray[np.intp]) -> NDArray[np.float64]:
         blocks = range(int(members[0]) // BLOCK, int(members[-1]) // BLOCK + 1)
-        numbers = [axis.draw(np.random.default_rng((self.seed, place, block)), BLOCK) for block in blocks]
+        numbers = [axis._draw(np.random.default_rng((self.seed, place, block)), BLOCK) for block in blocks]
         return np.concatenate(numbers)[members - blocks[0] * BLOCK]
 
 

@@ -48,19 +48,8 @@ class Chunk:
         """Of the file."""
         return f"part-{self.index:07d}.parquet"
 
-    def entry(self, content: bytes) -> dict[str, Any]:
-        """Return the manifest's entry of the file.
-
-        Parameters
-        ----------
-        content : bytes
-            Bytes of the Parquet file.
-
-        Returns
-        -------
-        dict of str to object
-            Name, first and last row (included), and SHA-256 checksum.
-        """
+    def _entry(self, content: bytes) -> dict[str, Any]:
+        """Return the manifest's entry of the file, with its SHA-256 checksum."""
         checksum = hashlib.sha256(content).hexdigest()
         return {"part": self.name, "first": self.first, "last": self.last - 1, "sha256": checksum}
 
@@ -190,7 +179,7 @@ class SweepFolder:
             file = self.path / chunk.name
             if not os.path.lexists(file):
                 absent.append(chunk)
-            elif file.is_symlink() or listed.get(chunk.name) != chunk.entry(file.read_bytes()):
+            elif file.is_symlink() or listed.get(chunk.name) != chunk._entry(file.read_bytes()):
                 altered.append(chunk)
         return absent, altered
 
@@ -212,7 +201,7 @@ class SweepFolder:
         if file.is_symlink():  # which would lead to another file
             file.unlink()
         write_whole(file, content)
-        append_line(self.path / MANIFEST, json.dumps(chunk.entry(content)))
+        append_line(self.path / MANIFEST, json.dumps(chunk._entry(content)))
 
     def _listed(self) -> dict[str, dict[str, Any]]:
         """Return the last entry of the manifest for each file, without unreadable lines."""

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..simulation.events import ZERO
-from .polynomials import half_of, peak_of, root_of, sizes_of, values_at
+from .polynomials import polynomials, values_at
 
 SAMPLES = 17  # of a step
 RESOLVED = 1e-10  # what the last coefficients of a step are of the largest where the polynomial is near
@@ -41,7 +41,7 @@ class Steps:
 
     @cached_property
     def sizes(self) -> Floats:
-        """Bounds and sizes of each polynomial, as `polynomials.sizes_of` returns them."""
+        """Bounds and sizes of each polynomial, as `Polynomials.sizes` has them."""
         return _sizes(self.coefficients)
 
     def negative(self) -> "Steps":
@@ -156,7 +156,7 @@ def _first_crossing(steps: Steps, parts: "_Parts", rounding: Floats) -> Floats:
     crossing, inside = parts.of(crossed[first] // 2), signs[crossed[first] - 1] * (crossed[first] % 2) != 0
     ends = np.repeat([[-1.0], [1.0]], len(there), axis=1)
     given = np.concatenate([crossing.coefficients, ends, small[crossed[first] // 2, 1:].T])
-    root, off = root_of(len(steps.coefficients))(given)
+    root, off = polynomials(len(steps.coefficients)).root(given)
     found, at = np.full(rounding.shape[1], np.nan), (crossing.step, there)
     place = crossing.middle + np.where(inside, root, -1.0) * crossing.half
     found[there] = np.where(off * crossing.half <= PLACED, steps.middle[at] + place * steps.length[at], np.inf)
@@ -179,7 +179,8 @@ class _Parts(NamedTuple):
 
     def half_of(self, side: float) -> "_Parts":
         """Return the lower half of each part, or the upper one: side -1 or 1."""
-        halved = half_of(len(self.coefficients), side)(self.coefficients)
+        functions = polynomials(len(self.coefficients))
+        halved = (functions.lower_half if side < 0 else functions.upper_half)(self.coefficients)
         return self._replace(coefficients=halved, middle=self.middle + side / 2 * self.half, half=self.half / 2)
 
 
@@ -215,18 +216,19 @@ def _largest(steps: Steps, size: Callable[[Floats], Floats]) -> Floats:
 
     It is at the ends of the steps, or inside of steps that can contain a larger one.
     """
-    polynomials, places = steps.coefficients, _places(steps.least)
-    found = size(_values(polynomials, (steps.least, 1.0))).max(axis=(0, 1))
-    reach, turns = _bounds(polynomials, steps.sizes)
-    step, element = np.nonzero(turns & (size(polynomials[0]) + reach >= found))
-    values = _values(polynomials[:, step, element], places)
+    coefficients, places = steps.coefficients, _places(steps.least)
+    found = size(_values(coefficients, (steps.least, 1.0))).max(axis=(0, 1))
+    reach, turns = _bounds(coefficients, steps.sizes)
+    step, element = np.nonzero(turns & (size(coefficients[0]) + reach >= found))
+    values = _values(coefficients[:, step, element], places)
     sizes = np.full((SAMPLES + 2, len(step)), -np.inf)
     sizes[1:-1] = size(values)
     best, chosen = np.nonzero((sizes[1:-1] >= sizes[:-2]) & (sizes[1:-1] >= sizes[2:]))
     at_best = values[best, chosen]
     sign = np.where(size(at_best) == at_best, 1.0, -1.0)
     near = np.array(places)[[best, np.maximum(best - 1, 0), np.minimum(best + 1, SAMPLES - 1)]]
-    (peak,) = peak_of(len(polynomials))(np.concatenate([polynomials[:, step[chosen], element[chosen]] * sign, near]))
+    given = np.concatenate([coefficients[:, step[chosen], element[chosen]] * sign, near])
+    (peak,) = polynomials(len(coefficients)).peak(given)
     np.maximum.at(found, element[chosen], peak)
     return found
 
@@ -236,22 +238,22 @@ def _places(least: float) -> tuple[float, ...]:
     return tuple(np.linspace(least, 1.0, SAMPLES).tolist())
 
 
-def _values(polynomials: Floats, places: tuple[float, ...]) -> Floats:
+def _values(coefficients: Floats, places: tuple[float, ...]) -> Floats:
     """Return values of polynomials, shape (powers, ...), as shape (places, ...)."""
-    powers, *shape = polynomials.shape
-    return values_at(powers, places)(polynomials.reshape(powers, -1)).reshape(len(places), *shape)
+    powers, *shape = coefficients.shape
+    return values_at(powers, places)(coefficients.reshape(powers, -1)).reshape(len(places), *shape)
 
 
-def _bounds(polynomials: Floats, sizes: Floats) -> tuple[Floats, NDArray[np.bool_]]:
+def _bounds(coefficients: Floats, sizes: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     """Bound the distance of polynomials from their constants for |x| <= 1.
 
     The second array is True if the slope can vanish there.
     """
     reach, bend, *_ = sizes
-    constant, slope = np.abs(polynomials[:2])
+    constant, slope = np.abs(coefficients[:2])
     return reach + MARGIN * (reach + constant), slope <= bend + MARGIN * (bend + slope)
 
 
-def _sizes(polynomials: Floats) -> Floats:
-    powers, *shape = polynomials.shape
-    return sizes_of(powers)(polynomials.reshape(powers, -1)).reshape(-1, *shape)
+def _sizes(coefficients: Floats) -> Floats:
+    powers, *shape = coefficients.shape
+    return polynomials(powers).sizes(coefficients.reshape(powers, -1)).reshape(-1, *shape)

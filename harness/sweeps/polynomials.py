@@ -5,7 +5,7 @@ returns an array of shape (results, m). The result for a polynomial does not dep
 """
 
 from collections.abc import Sequence
-from functools import lru_cache, reduce
+from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 from ..program.heyoka_function import import_heyoka
@@ -13,7 +13,7 @@ from ..simulation.evaluation import Evaluation, in_full_vectors
 
 NEWTON = 4  # steps of Newton's method, which from near samples reach rounding
 LAST = 2  # coefficients of a step, which are small where the polynomial is near
-DIFFERENT = 8  # numbers of powers whose functions are cached
+DIFFERENT = 8  # numbers of powers whose functions are known
 
 
 @lru_cache(DIFFERENT)
@@ -62,110 +62,82 @@ def values_at(powers: int, places: tuple[float, ...]) -> Evaluation:
     return _compiled([_value(polynomial, _number(place)) for place in places], polynomial)
 
 
-@lru_cache(DIFFERENT)
-def sizes_of(powers: int) -> Evaluation:
-    """Compile bounds of p(x) - p(0) and p'(x) - p'(0) for |x| <= 1, and sizes.
+class Polynomials:
+    """Functions of polynomials of one length, each compiled when first needed."""
 
-    Parameters
-    ----------
-    powers : int
-        Number of coefficients of each polynomial.
+    def __init__(self, powers: int) -> None:
+        self._polynomial = _coefficients(powers)
 
-    Returns
-    -------
-    Evaluation
-        Function with four results, the bounds of p and of p', the size of the largest coefficient, and that of the
-        largest of the last ones.
-    """
-    polynomial = _coefficients(powers)
-    sizes, bends = list(map(_size, polynomial)), list(map(_size, _slope(polynomial)))
-    bounds = [import_heyoka().sum([_number(0.0), *part[1:]]) for part in (sizes, bends)]
-    return _compiled([*bounds, reduce(_larger, sizes), reduce(_larger, sizes[-LAST:])], polynomial)
+    @cached_property
+    def sizes(self) -> Evaluation:
+        """Bounds of p(x) - p(0) and p'(x) - p'(0) for |x| <= 1, and sizes.
+
+        The sizes are those of the largest coefficient, and of the largest of the last ones.
+        """
+        polynomial = self._polynomial
+        sizes, bends = list(map(_size, polynomial)), list(map(_size, _slope(polynomial)))
+        bounds = [import_heyoka().sum([_number(0.0), *part[1:]]) for part in (sizes, bends)]
+        return _compiled([*bounds, reduce(_larger, sizes), reduce(_larger, sizes[-LAST:])], polynomial)
+
+    @cached_property
+    def lower_half(self) -> Evaluation:
+        """Coefficients of p((x - 1)/2), the lower half of |x| <= 1."""
+        return self._half(-1.0)
+
+    @cached_property
+    def upper_half(self) -> Evaluation:
+        """Coefficients of p((x + 1)/2), the upper half of |x| <= 1."""
+        return self._half(1.0)
+
+    def _half(self, side: float) -> Evaluation:
+        powers = len(self._polynomial)
+        halved = [_number(0.5**power) * coefficient for power, coefficient in enumerate(self._polynomial)]
+        for done in range(powers - 1):
+            for power in reversed(range(done, powers - 1)):
+                halved[power] = halved[power] + _number(side) * halved[power + 1]
+        return _compiled(halved, self._polynomial)
+
+    @cached_property
+    def peak(self) -> Evaluation:
+        """The largest value that Newton's method finds between two bounds.
+
+        The starting place and the bounds are the last three rows.
+        """
+        heyoka, polynomial = import_heyoka(), self._polynomial
+        here, low, high = given = heyoka.make_vars("x", "low", "high")
+        best, slope = _value(polynomial, here), _slope(polynomial)
+        for _ in range(NEWTON):
+            moved = here - _value(slope, here) / _value(_slope(slope), here)
+            moved = heyoka.select(
+                heyoka.eq(moved, moved), moved, here
+            )  # no number where the slope is the same all over
+            here = heyoka.select(heyoka.lt(moved, low), low, heyoka.select(heyoka.gt(moved, high), high, moved))
+            value = _value(polynomial, here)
+            best = heyoka.select(heyoka.gt(value, best), value, best)
+        return _compiled([best], [*polynomial, *given])
+
+    @cached_property
+    def root(self) -> Evaluation:
+        """The place x of the zero between two of opposite signs, and its error.
+
+        The method is Newton's, with bisection if a step leaves the interval that contains the zero. The last three rows
+        are the places and the rounding of a value.
+        """
+        heyoka, polynomial = import_heyoka(), self._polynomial
+        low, high, rounding = given = heyoka.make_vars("low", "high", "rounding")
+        here, beyond, slope = (low + high) / _number(2.0), _value(polynomial, high), _slope(polynomial)
+        for _ in range(3 * NEWTON):
+            value = _value(polynomial, here)
+            lies_before = heyoka.lt(value * beyond, _number(0.0))
+            low, high = heyoka.select(lies_before, here, low), heyoka.select(lies_before, high, here)
+            moved = here - value / _value(slope, here)
+            inside = heyoka.logical_and([heyoka.gte(moved, low), heyoka.lte(moved, high)])
+            here = heyoka.select(inside, moved, (low + high) / _number(2.0))
+        off = (_size(_value(polynomial, here)) + rounding) / _size(_value(slope, here))
+        return _compiled([here, off], [*polynomial, *given])
 
 
-@lru_cache(2 * DIFFERENT)
-def half_of(powers: int, side: float) -> Evaluation:
-    """Compile the coefficients of p((x + side)/2).
-
-    This is the lower half of |x| <= 1 for side -1, the upper half for side 1.
-
-    Parameters
-    ----------
-    powers : int
-        Number of coefficients of each polynomial.
-    side : float
-        -1.0 or 1.0.
-
-    Returns
-    -------
-    Evaluation
-        Function with `powers` results.
-    """
-    polynomial = _coefficients(powers)
-    halved = [_number(0.5**power) * coefficient for power, coefficient in enumerate(polynomial)]
-    for done in range(powers - 1):
-        for power in reversed(range(done, powers - 1)):
-            halved[power] = halved[power] + _number(side) * halved[power + 1]
-    return _compiled(halved, polynomial)
-
-
-@lru_cache(DIFFERENT)
-def peak_of(powers: int) -> Evaluation:
-    """Compile the largest value that Newton's method finds between two bounds.
-
-    The starting place and the bounds are the last three rows.
-
-    Parameters
-    ----------
-    powers : int
-        Number of coefficients of each polynomial.
-
-    Returns
-    -------
-    Evaluation
-        Function with one result.
-    """
-    heyoka, polynomial = import_heyoka(), _coefficients(powers)
-    here, low, high = given = heyoka.make_vars("x", "low", "high")
-    best, slope = _value(polynomial, here), _slope(polynomial)
-    for _ in range(NEWTON):
-        moved = here - _value(slope, here) / _value(_slope(slope), here)
-        moved = heyoka.select(heyoka.eq(moved, moved), moved, here)  # no number where the slope is the same all over
-        here = heyoka.select(heyoka.lt(moved, low), low, heyoka.select(heyoka.gt(moved, high), high, moved))
-        value = _value(polynomial, here)
-        best = heyoka.select(heyoka.gt(value, best), value, best)
-    return _compiled([best], [*polynomial, *given])
-
-
-@lru_cache(DIFFERENT)
-def root_of(powers: int) -> Evaluation:
-    """Compile the zero between two places of opposite signs.
-
-    The method is Newton's, with bisection if a step leaves the interval that contains the zero. The last three rows are
-    the places and the rounding of a value.
-
-    Parameters
-    ----------
-    powers : int
-        Number of coefficients of each polynomial.
-
-    Returns
-    -------
-    Evaluation
-        Function with two results: the place x, and how far the zero may be from there.
-    """
-    heyoka, polynomial = import_heyoka(), _coefficients(powers)
-    low, high, rounding = given = heyoka.make_vars("low", "high", "rounding")
-    here, beyond, slope = (low + high) / _number(2.0), _value(polynomial, high), _slope(polynomial)
-    for _ in range(3 * NEWTON):
-        value = _value(polynomial, here)
-        lies_before = heyoka.lt(value * beyond, _number(0.0))
-        low, high = heyoka.select(lies_before, here, low), heyoka.select(lies_before, high, here)
-        moved = here - value / _value(slope, here)
-        inside = heyoka.logical_and([heyoka.gte(moved, low), heyoka.lte(moved, high)])
-        here = heyoka.select(inside, moved, (low + high) / _number(2.0))
-    off = (_size(_value(polynomial, here)) + rounding) / _size(_value(slope, here))
-    return _compiled([here, off], [*polynomial, *given])
+polynomials = lru_cache(DIFFERENT)(Polynomials)
 
 
 def _coefficients(powers: int) -> list[Any]:

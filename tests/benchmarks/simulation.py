@@ -30,7 +30,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.program.timing import Batch, python_batch
 from holonom.sandbox import Limits
-from holonom.simulation.engines.engine import Task
+from holonom.simulation.engines.engine import Task, advance
 from holonom.simulation.engines.program_engine import ProgramEngine
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import TaylorEngine
@@ -118,7 +118,7 @@ def holonom(
 
         def run() -> State:
             follower.restart(begin, start)
-            follower.advance(end)
+            advance(follower, end)
             return follower.state.copy()
 
         return run

@@ -27,6 +27,7 @@ from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
+from holonom.simulation.engines.engine import advance
 from holonom.simulation.hybrid_motion import HybridMotion
 from holonom.simulation.initial_state import at_values
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
@@ -157,7 +158,7 @@ def rows_of_other_engines(base: float) -> Iterator[str]:
 def engine_seconds(problem: MotionProblem, request: SimulationRequest) -> float:
     precision = read_precision("double")
     motion = HybridMotion(_parametrized_problem(problem, request), request, precision, precision.number("10"))
-    return _processor(lambda: motion.mode.engine.advance(10.0))
+    return _processor(lambda: advance(motion.mode.engine, 10.0))
 
 
 def ensemble() -> float:

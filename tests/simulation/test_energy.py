@@ -84,8 +84,8 @@ def test_work_of_a_control_was_integrated_by_the_points_of_a_step_as_long_as_the
 
 def test_rounding_errors_of_a_power_were_resolved_in_a_thousand_parts_a_step(monkeypatch):
     """At the start no reaction does work: 4000 powers of 1e-16 were computed for the first two steps."""
-    computed, power = [], EnergyBalance.power
-    monkeypatch.setattr(EnergyBalance, "power", lambda *given: computed.append(1) or power(*given))
+    computed, power = [], EnergyBalance._power
+    monkeypatch.setattr(EnergyBalance, "_power", lambda *given: computed.append(1) or power(*given))
     wanted = SimulationRequest(engine="robust", samples=0, until=Fraction(1, 4))
     report = simulate(problem("hard/swing.mac", "opening_scene"), wanted).report
     assert len(computed) <= 20 * report.steps
@@ -105,7 +105,7 @@ def test_damping_takes_its_power():
     state = np.array([1.0, 2.0, 0.9, 0.5, -1 / 3, 0.95])
     # conservative forces are in Q here, too: Q.v = -(q1 + q2) v1 - 2 (v1 + v2) v2, and no reaction along a free motion
     expected = -3 * 0.5 - 2 * (0.5 - 1 / 3) * (-1 / 3)
-    assert balance.power(np.array([0.0]), state[:, None])[0] == pytest.approx(expected, rel=1e-12)
+    assert balance._power(np.array([0.0]), state[:, None])[0] == pytest.approx(expected, rel=1e-12)
 
 
 def test_a_residual_is_the_distance_from_the_constraint():

@@ -16,6 +16,7 @@ from holonom.simulation.constraints.program_projection import (
     distance,
     nearest_state,
 )
+from holonom.simulation.engines.engine import advance
 from holonom.simulation.engines.robust import RobustEngine
 from holonom.simulation.evaluation import LazyCompiledFunction, evaluation, evaluation_once, in_full_vectors
 from holonom.simulation.hybrid_motion import HybridMotion
@@ -110,7 +111,7 @@ def test_all_that_follow_a_motion_ask_the_same_matrices():
     """Each had its own, carried out by NumPy some hundred times before it was compiled."""
     linkage = example("linkage.mac")
     motion = HybridMotion(linkage, SimulationRequest(until=Fraction(1)), DOUBLE, 1.0)
-    motion.advance(1.0)  # past a dead centre
+    advance(motion, 1.0)  # past a dead centre
     mode = motion.mode
     first, second = mode.engine._first, mode.engine._second
     assert isinstance(second, RobustEngine)

@@ -1,6 +1,5 @@
 """An engine of a few lines: the classical Runge-Kutta method on the motion program, its steps of one length."""
 
-from collections import deque
 from math import ceil
 
 import numpy as np
@@ -38,10 +37,7 @@ class ToyEngine:
     def restart(self, time, state):
         self.time, self.state = time, state.copy()
 
-    def advance(self, until):
-        deque(self.integrate(until), maxlen=0)
-
-    def integrate(self, until):
+    def integrate(self, until, dense=True):
         while self.time < until:
             if STOPS_AT <= self.time < GOES_ON_AT:
                 reason = "stopped"

@@ -18,7 +18,7 @@ from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision, read_precision
 from ...program.request import Solve
 from ...program.rewriting import computing
-from ...simulation.engines.engine import Engine, Task
+from ...simulation.engines.engine import Engine, Task, advance
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
@@ -114,7 +114,7 @@ class Repeated:
         """Integrate the motion once. Return the final state."""
         before = self._counted()
         self._motion.restart(self._begin, self._start)
-        self._motion.advance(self._last)
+        advance(self._motion, self._last)
         self.work = self._counted() - before
         return self._motion.state
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from ...program.expense import order_for
 from ...program.precision import read_precision
-from ...simulation.engines.engine import Task
+from ...simulation.engines.engine import Task, advance
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...structs import entry
@@ -92,6 +92,6 @@ def _states(problem: "MotionProblem", times: Sequence[Fraction], digits: int) ->
     asked = {"precision": digits, "tol": 10.0**-digits, "stabilization": Stabilization.NONE}
     motion = TaylorEngine(Task.of(problem, **asked))
     for time in times:
-        motion.advance(numbers.ratio(time))
+        advance(motion, numbers.ratio(time))
         states[time] = state_of(numbers, motion.state)
     return states

@@ -12,7 +12,7 @@ from ...program.motion_problem import MotionProblem, motion_problem, require_ana
 from ...program.precision import read_precision
 from ...program.request import Request, Solve
 from ...sandbox import Limits
-from ...simulation.engines.engine import Task
+from ...simulation.engines.engine import Task, advance
 from ...simulation.engines.taylor import TaylorEngine
 from ...simulation.request import Stabilization
 from ...simulation.simulate import last_time
@@ -172,7 +172,7 @@ def _end_of(problem: MotionProblem, plan: Plan) -> Fraction:
 def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[Plan, list[Omission]]:
     """Return the plan without the precisions whose reference would take too long."""
     rehearsal = TaylorEngine(Task.of(problem, stabilization=Stabilization.NONE))
-    rehearsal.advance(float(until))
+    advance(rehearsal, float(until))
     tolerances, beyond = dict(plan.tolerances), []
     for precision in reversed(plan.tolerances):
         digits = read_precision(precision).digits + MORE_DIGITS

@@ -23,7 +23,6 @@ from ...program.rewriting import computing
 from ...program.sign_pattern import program_with_values
 from ...program.table_numbers import TimeFunction
 from ..evaluation import Evaluation, Numbers, as_floats
-from ..hard_cases import MotionState
 from ..matrices import Matrices, MotionMatrices, Vector, start_of
 from ..place_and_reason import OVERFLOW, place_and_reason
 from .directions import DEPENDENT, WeightedConstraints, rank_of, weighted_constraints
@@ -270,15 +269,13 @@ def laws_of(problem: MotionProblem) -> tuple[str, ...]:
     return tuple(name for name, _ in problem.matrices.assignments if f"dot({name})" in assigned)
 
 
-def vanishing_times(
-    problem: MotionProblem, matrices: MotionMatrices, controls: Collection[str], end: float
-) -> list[float]:
-    """Return the times at which the gradient of a constraint may vanish, in order.
+class VanishingGradients:
+    """The times at which the gradient of a constraint may vanish.
 
     Parameters
     ----------
     problem : MotionProblem
-        The motion.
+        The motion, whose start gives the size of each gradient.
     matrices : MotionMatrices
         Matrices of the same motion.
     controls : collection of str
@@ -286,59 +283,43 @@ def vanishing_times(
     end : float
         Last time of the search, which begins with the motion.
 
-    Returns
-    -------
-    list of float
-    """
-    start, state = start_of(problem)
-    times = zeros_of_controls(problem, controls, start, end)
-    constraints = range(len(problem.multipliers)) if times else ()
-    return sorted({t for beta in constraints for t in _without_gradient(matrices, times, state, beta)})
-
-
-def require_gradient(problem: MotionProblem, t: float, at: MotionState) -> None:
-    """Reject a time at which a constraint loses its gradient.
-
-    Its gradient is evaluated just before that time.
-
-    Parameters
+    Attributes
     ----------
-    problem : MotionProblem
-        The motion, whose start gives the size of each gradient.
-    t : float
-        The time, for the message.
-    at : MotionState
-        State just before that time.
-
-    Raises
-    ------
-    HolonomError
-        A gradient has vanished.
+    times, stops : list of float
+        These times in order, and those just before them, with regular equations of motion.
     """
-    sizes = at.matrices.nominal.coordinates
-    left, whole = (
-        np.linalg.norm(at.matrices(*when).jacobian * sizes, axis=1) for when in ((at.t, at.state), start_of(problem))
-    )
-    lost = np.flatnonzero(left < VANISHED * whole)
-    if len(lost):
-        raise no_gradient(t, problem.multipliers[lost[0]])
 
+    def __init__(self, problem: MotionProblem, matrices: MotionMatrices, controls: Collection[str], end: float) -> None:
+        self._problem, self._matrices, (start, state) = problem, matrices, start_of(problem)
+        zeros = zeros_of_controls(problem, controls, start, end)
+        constraints = range(len(problem.multipliers)) if zeros else ()
+        self.times = sorted({t for beta in constraints for t in _without_gradient(matrices, zeros, state, beta)})
+        self.stops = [t - SHORTLY * (t - start) for t in self.times]
 
-def shortly_before(t: float, start: float) -> float:
-    """Return a time just before another, with regular equations of motion.
+    def require(self, stop: float, state: Vector) -> None:
+        """Reject a state at one of the stops at which a constraint loses its gradient.
 
-    Parameters
-    ----------
-    t : float
-        The later time.
-    start : float
-        Initial time of the motion.
+        Parameters
+        ----------
+        stop : float
+            Time of the state.
+        state : ndarray, shape (2n,)
+            Coordinates, then velocities.
 
-    Returns
-    -------
-    float
-    """
-    return t - SHORTLY * (t - start)
+        Raises
+        ------
+        HolonomError
+            A gradient has vanished.
+        """
+        sizes = self._matrices.nominal.coordinates
+        left, whole = (
+            np.linalg.norm(self._matrices(*at).jacobian * sizes, axis=1)
+            for at in ((stop, state), start_of(self._problem))
+        )
+        lost = np.flatnonzero(left < VANISHED * whole)
+        if len(lost):
+            time = self.times[self.stops.index(stop)]
+            raise no_gradient(time, self._problem.multipliers[lost[0]])
 
 
 def no_gradient(t: float, multiplier: str) -> HolonomError:

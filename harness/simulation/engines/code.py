@@ -75,8 +75,8 @@ def codes_for(operations: int, precision: Precision) -> tuple[Code, ...]:
     return (Code.PLAIN, Code.UNROLLED) if operations <= SMALL else (Code.QUICK, Code.PLAIN, Code.UNROLLED)
 
 
-def better_code(code: Code, operations: int, precision: Precision) -> Code | None:
-    """Return the next better code, if there is one.
+def worthwhile_code(code: Code, operations: int, precision: Precision, steps: float, tol: float) -> Code | None:
+    """Return the next better code if the remaining steps of a run justify compilation.
 
     Parameters
     ----------
@@ -86,26 +86,6 @@ def better_code(code: Code, operations: int, precision: Precision) -> Code | Non
         Operations of one evaluation of the accelerations.
     precision : Precision
         Numbers of the integrator.
-
-    Returns
-    -------
-    Code or None
-    """
-    codes = codes_for(operations, precision)
-    return dict(pairwise(codes)).get(code)
-
-
-def is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
-    """Return True if the remaining steps of a run justify compilation of better code.
-
-    Parameters
-    ----------
-    code : Code
-        The present code.
-    better : Code
-        The code to compile.
-    operations : int
-        Operations of one evaluation of the accelerations.
     steps : float
         Number of remaining steps.
     tol : float
@@ -113,8 +93,13 @@ def is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: 
 
     Returns
     -------
-    bool
+    Code or None
     """
+    better = dict(pairwise(codes_for(operations, precision))).get(code)
+    return better if better and _is_worthwhile(code, better, operations, steps, tol) else None
+
+
+def _is_worthwhile(code: Code, better: Code, operations: int, steps: float, tol: float) -> bool:
     gained = _running(code, operations, steps, tol) - _running(better, operations, steps, tol)
     return gained > _compilation(better, operations)
 

@@ -3,6 +3,7 @@
 An engine that cannot continue raises an error with the reason.
 """
 
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
@@ -130,6 +131,24 @@ class Task(NamedTuple):
         return cls(problem, request, read_precision(str(request.precision)), None, MotionMatrices(problem))
 
 
+def advance(engine: "Engine", until: Any) -> None:
+    """Integrate to a time without the steps.
+
+    Parameters
+    ----------
+    engine : Engine
+        The engine.
+    until : number
+        Last time.
+
+    Raises
+    ------
+    Obstruction, HolonomError
+        As `Engine.integrate`.
+    """
+    deque(engine.integrate(until, dense=False), maxlen=0)
+
+
 class Engine(Protocol):
     """The interface of an engine.
 
@@ -198,29 +217,15 @@ class Engine(Protocol):
             Coordinates, then velocities.
         """
 
-    def advance(self, until: Any) -> None:
-        """Integrate to a time.
-
-        Parameters
-        ----------
-        until : number
-            Last time.
-
-        Raises
-        ------
-        Obstruction
-            The engine cannot continue, but another one may. Time and state are those before the obstruction.
-        HolonomError
-            The motion itself ends.
-        """
-
-    def integrate(self, until: Any) -> Iterator[Step]:
+    def integrate(self, until: Any, dense: bool = True) -> Iterator[Step]:
         """Integrate to a time and yield steps with their states.
 
         Parameters
         ----------
         until : number
             Last time.
+        dense : bool
+            False if the steps are not needed. An engine may take them at once then.
 
         Yields
         ------
@@ -229,8 +234,10 @@ class Engine(Protocol):
 
         Raises
         ------
-        Obstruction, HolonomError
-            As `advance`.
+        Obstruction
+            The engine cannot continue, but another one may. Time and state are those before the obstruction.
+        HolonomError
+            The motion itself ends.
         """
 
     def solutions(self, times: Numbers, states: Numbers) -> Solutions:

@@ -7,7 +7,6 @@ as independent again as they were before.
 """
 
 from bisect import bisect_left
-from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Annotated, Any, NamedTuple
@@ -105,13 +104,15 @@ class FallbackEngine:
         self._current, self._begun = self._first, float(time_point)
         self._why_first = self._reason_for_first()
 
-    def advance(self, until: Any) -> None:
-        """Integrate to a time, each engine at its fastest (see `Engine.advance`)."""
-        deque(self._segments_until(until, _without_steps), maxlen=0)
-
-    def integrate(self, until: Any) -> Iterator[Step]:
-        """Integrate to a time, step by step (see `Engine.integrate`)."""
-        return self._segments_until(until, _with_steps)
+    def integrate(self, until: Any, dense: bool = True) -> Iterator[Step]:
+        """Integrate to a time, each engine at its fastest (see `Engine.integrate`)."""
+        while self.time != until:
+            try:
+                yield from self._segment(self._first.integrate(until, dense), lambda: False, *self._why_first)
+            except Obstruction as obstruction:
+                if not (self._automatic and self._in_doubles) or self._task.problem.reacting:
+                    raise
+                yield from self._past(obstruction, self._fallback(), until)
 
     def solutions(self, times: Numbers, states: Numbers) -> Solutions:
         """Return the unknowns by the engine of those times (see `Engine.solutions`)."""
@@ -190,15 +191,6 @@ class FallbackEngine:
 
     # ---- segments ----
 
-    def _segments_until(self, until: Any, along: Callable[[Engine, Any], Iterator[Step]]) -> Iterator[Step]:
-        while self.time != until:
-            try:
-                yield from self._segment(along(self._first, until), lambda: False, *self._why_first)
-            except Obstruction as obstruction:
-                if not (self._automatic and self._in_doubles) or self._task.problem.reacting:
-                    raise
-                yield from self._past(obstruction, self._fallback(), until)
-
     def _past(self, obstruction: Obstruction, second: Engine, until: Any) -> Iterator[Step]:
         """Yield the motion past an obstruction, or to a time before that."""
         second.restart(self._first.time, self._first.state.copy())
@@ -236,12 +228,3 @@ class FallbackEngine:
         if self.segments and self.segments[-1]._replace(start=segment.start, end=segment.end) == segment:
             segment = segment._replace(start=self.segments.pop().start)
         self.segments.append(segment)
-
-
-def _with_steps(engine: Engine, until: Any) -> Iterator[Step]:
-    return engine.integrate(until)
-
-
-def _without_steps(engine: Engine, until: Any) -> Iterator[Step]:
-    engine.advance(until)
-    yield from ()

@@ -7,7 +7,6 @@ is regular there. After an obstruction the next one may be near, so the first st
 """
 
 import time
-from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from math import isfinite
@@ -145,13 +144,9 @@ class ProgramEngine:
         self._behind_obstruction = self._obstruction is not None
         self._longest, self._usual, self._obstruction = 0.0, 0.0, None
 
-    def advance(self, until: Any) -> None:
-        """Integrate until the motion program fails (see `Engine.advance`)."""
-        deque(self._blocks(until, dense=False), maxlen=0)
-
-    def integrate(self, until: Any) -> Iterator[Step]:
-        """Integrate with states between the steps (see `Engine.integrate`)."""
-        return self._blocks(until, dense=True)
+    def integrate(self, until: Any, dense: bool = True) -> Iterator[Step]:
+        """Integrate until the motion program fails (see `Engine.integrate`)."""
+        return self._blocks(until, dense)
 
     def _blocks(self, until: Any, dense: bool) -> Iterator[Step]:
         self._begin()

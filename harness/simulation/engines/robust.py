@@ -102,12 +102,7 @@ class RobustEngine:
             self._begin(time_point, state)
             self._vanishing = time_point + until_singular
 
-    def advance(self, until: float) -> None:
-        """Integrate to a time (see `Engine.advance`)."""
-        for _ in self.integrate(until):
-            pass
-
-    def integrate(self, until: float) -> Iterator[Step]:
+    def integrate(self, until: float, dense: bool = True) -> Iterator[Step]:
         """Integrate to a time, step by step (see `Engine.integrate`)."""
         steps, begun = self.steps, self.time
         while self.time < until:

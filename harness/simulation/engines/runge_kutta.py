@@ -108,19 +108,17 @@ class RungeKuttaEngine(ProgramEngine):
         begun, each = COMPILER
         return begun + each * operations + taken * (STEP + STAGES * operations)
 
-    def advance(self, until: float) -> None:
-        """Integrate to a time, in one call of C if possible (see `Engine.advance`).
-
-        This is possible for a near time without an obstruction before it.
-        """
-        integrator = self._integrator
-        self._begin()
-        if self._obstruction is None:
-            self.steps += integrator.quiet_steps(until, self._first_block)
-            if integrator.time == until:
-                return
-            self._usual = max(self._usual, integrator.usual)
-        super().advance(until)
+    def _blocks(self, until: float, dense: bool) -> Iterator[Step]:
+        """Take blocks, in one call of C to a near time without an obstruction before it."""
+        if not dense:
+            integrator = self._integrator
+            self._begin()
+            if self._obstruction is None:
+                self.steps += integrator.quiet_steps(until, self._first_block)
+                if integrator.time == until:
+                    return
+                self._usual = max(self._usual, integrator.usual)
+        yield from super()._blocks(until, dense)
 
     def _set_values(self) -> None:
         self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")

@@ -24,7 +24,7 @@ from ..constraints.program_projection import ProgramProjection
 from ..constraints.stabilization import equations_of_motion, stabilized
 from ..evaluation import Numbers
 from ..request import EngineName, Stabilization
-from .code import Code, better_code, codes_for, expected_seconds, is_worthwhile
+from .code import Code, codes_for, expected_seconds, worthwhile_code
 from .engine import Block, Step, Task
 from .program_engine import FIRST_BLOCK, ProgramEngine, Taken
 from .scaled_time import ScaledTime, in_unit, unit_of
@@ -204,13 +204,13 @@ class TaylorEngine(ProgramEngine):
 
         Their number is estimated by the steps so far.
         """
-        better = None if self._chosen else better_code(self.code, self._program.operations, self.precision)
         begun, before = self._counted
-        if better is None or self.steps == before:
+        if self._chosen or self.steps == before:
             return
         end = until if self._end is None else self._end
         left = (self.steps - before) * float((end - self.time) / (self.time - begun))
-        if is_worthwhile(self.code, better, self._program.operations, left, float(self._integrator.tol)):
+        asked = self._program.operations, self.precision, left, float(self._integrator.tol)
+        if better := worthwhile_code(self.code, *asked):
             begun = time.perf_counter()
             self._set_up(better, self.time, self.state)
             self.compile_seconds += time.perf_counter() - begun

@@ -11,7 +11,7 @@ from holonom.failures import ErrorKind
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.constraints.singularity import laws_of, no_gradient, vanishing_times, zeros_of_controls
+from holonom.simulation.constraints.singularity import VanishingGradients, laws_of, no_gradient, zeros_of_controls
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -72,20 +72,20 @@ def test_a_bob_drawn_into_its_hinge_and_out_again_went_on(described, end):
 def test_zeros_of_a_control_that_is_no_vanishing_length_are_harmless(described, constraint, state):
     problem = described(constraint, "1 - t", state)
     assert zeros_of_controls(problem, laws_of(problem), 0.0, 2.0) == [1.0]
-    assert vanishing_times(problem, MotionMatrices(problem), laws_of(problem), 2.0) == []
+    assert VanishingGradients(problem, MotionMatrices(problem), laws_of(problem), 2.0).times == []
 
 
 def test_a_rate_that_is_a_number_hid_the_zero_of_its_law():
     """Where a parameter is open, values are put into programs, and dot(u) = -1 was no assignment any more."""
     problem = example("hard/vanishing_length.mac", "whirling_scene", open_parameters=("m",))
     assert zeros_of_controls(problem, laws_of(problem), 0.0, 2.0) == [1.0]
-    assert vanishing_times(problem, MotionMatrices(problem), laws_of(problem), 2.0) == [1.0]
+    assert VanishingGradients(problem, MotionMatrices(problem), laws_of(problem), 2.0).times == [1.0]
 
 
 def test_length_vanishes_about_a_hinge_that_moves(described):
     """The point without gradient is the hinge, wherever it is then."""
     problem = described("(x - sin(t))^2 + y^2 - u^2", "1 - t", "x = 3/5, y = -4/5, dot(x) = 0")
-    assert vanishing_times(problem, MotionMatrices(problem), laws_of(problem), 2.0) == [1.0]
+    assert VanishingGradients(problem, MotionMatrices(problem), laws_of(problem), 2.0).times == [1.0]
 
 
 @pytest.mark.parametrize("engine", [EngineName.AUTO, EngineName.TAYLOR])
@@ -104,7 +104,7 @@ def test_a_law_in_parts_of_constant_rates_went_through_the_hinge(described):
 def test_motion_goes_on_past_a_zero_at_which_the_bob_is_far_from_the_hinge(described):
     """On the hyperbola x^2 - y^2 = u^2 the bob slides along the branch y = -x at u = 0, unless it is in the corner."""
     problem = described("x^2 - y^2 - u", "1 - t", "x = 2, y = -sqrt(3), dot(x) = 0")
-    assert vanishing_times(problem, MotionMatrices(problem), laws_of(problem), 2.0) == [1.0]
+    assert VanishingGradients(problem, MotionMatrices(problem), laws_of(problem), 2.0).times == [1.0]
     report = simulate(problem, SimulationRequest(samples=FINAL_STATE_ALONE)).report
     assert report.t == 2.0
     assert [segment.engine for segment in report.segments] == [EngineName.TAYLOR]

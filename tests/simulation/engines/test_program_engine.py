@@ -13,7 +13,7 @@ from holonom.failures import ErrorKind
 from holonom.program.motion_problem import motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.engines.engine import Task
+from holonom.simulation.engines.engine import Task, advance
 from holonom.simulation.engines.program_engine import DECAYS_IN_A_RUN, FIRST_BLOCK, Obstruction
 from holonom.simulation.engines.runge_kutta import RungeKuttaEngine
 from holonom.simulation.engines.taylor import FINE_BLOCK, TaylorEngine
@@ -38,9 +38,9 @@ def engine(request):
 
 def test_it_goes_on_from_where_it_is(engine):
     at_once, in_parts = (engine(Task.of(problem("chain.mac"))) for _ in range(2))
-    at_once.advance(2.0)
+    advance(at_once, 2.0)
     for time in np.linspace(0.1, 2, 20):
-        in_parts.advance(time)
+        advance(in_parts, time)
     assert in_parts.time == 2.0
     assert in_parts.state == pytest.approx(at_once.state, abs=10 * CLOSE[engine])
 
@@ -48,10 +48,10 @@ def test_it_goes_on_from_where_it_is(engine):
 def test_a_run_repeated_from_the_start_is_the_same_bit_by_bit(engine):
     motion = engine(Task.of(problem("chain.mac"), tol=1e-9))
     begin, start = motion.time, motion.state.copy()
-    motion.advance(2.0)
+    advance(motion, 2.0)
     first = motion.state.copy()
     motion.restart(begin, start)
-    motion.advance(2.0)
+    advance(motion, 2.0)
     assert (motion.state == first).all()
 
 
@@ -66,7 +66,7 @@ def test_pieces_join_and_hold_the_states_between(engine):
         assert ends[0] == pytest.approx(ends[1], abs=CLOSE[engine])
     middle = pieces[len(pieces) // 2]
     times = np.linspace(middle.start, middle.end, 4)
-    other.advance(times[2])
+    advance(other, times[2])
     assert middle.states(times)[:, 2] == pytest.approx(other.state, abs=10 * CLOSE[engine])
 
 
@@ -88,7 +88,7 @@ def test_a_motion_that_ends_in_finite_time_is_followed_to_there(engine, write_sc
     """Truth: ddot(x) = 6 x^2 has the motion x = 1/(1 - t)^2, which ends at t = 1."""
     motion = engine(Task.of(motion_problem(write_scene(BURST), Request(), Limits())))
     with failing(ErrorKind.NO_WAY_ON):
-        motion.advance(2.0)
+        advance(motion, 2.0)
     assert motion.state[0] * (1 - motion.time) ** 2 == pytest.approx(1, rel=1e-3)
 
 

@@ -14,8 +14,8 @@ from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.constraints.program_projection import ProgramProjection
 from holonom.simulation.engines import code
-from holonom.simulation.engines.code import Code, _running, codes_for, is_worthwhile
-from holonom.simulation.engines.engine import Task
+from holonom.simulation.engines.code import Code, _is_worthwhile, _running, codes_for
+from holonom.simulation.engines.engine import Task, advance
 from holonom.simulation.engines.taylor import TaylorEngine
 from holonom.simulation.request import SimulationRequest, Stabilization
 from holonom.simulation.simulate import simulate
@@ -28,12 +28,12 @@ def test_better_code_for_long_runs():
     assert TaylorEngine(Task.of(problem("pendulum.mac"), compact=True)).code is Code.COMPACT
     assert TaylorEngine(Task.of(problem("pendulum.mac"), compact=False)).code is Code.UNROLLED
     long = TaylorEngine(Task.of(problem("pendulum.mac", "swing_scene")))
-    long.advance(100_000.0)
+    advance(long, 100_000.0)
     assert long.code is Code.UNROLLED
     second = 1 / _running(Code.QUICK, 20, 1, 1e-9)  # steps
-    assert not is_worthwhile(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
-    assert is_worthwhile(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
-    assert not is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / _running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
+    assert not _is_worthwhile(Code.QUICK, Code.COMPACT, 20, 1e-3 * second, 1e-9)
+    assert _is_worthwhile(Code.QUICK, Code.COMPACT, 20, 10 * second, 1e-9)
+    assert not _is_worthwhile(Code.COMPACT, Code.UNROLLED, 500, 10 / _running(Code.COMPACT, 500, 1, 1e-9), 1e-9)
     double = read_precision("double")
     assert codes_for(200, double) == (Code.QUICK, Code.PLAIN, Code.UNROLLED)
     assert codes_for(2000, double) == (Code.QUICK, Code.COMPACT)
@@ -70,9 +70,9 @@ swing : holonomic_scene(system, control_law = [u = table([{points}])], initial_s
 @pytest.mark.parametrize("compact", [None, True, False])
 def test_the_code_does_not_change_the_motion(compact):
     motion = TaylorEngine(Task.of(problem("car_axis.mac"), compact=compact))
-    motion.advance(1.0)
+    advance(motion, 1.0)
     other = TaylorEngine(Task.of(problem("car_axis.mac"), stabilization=Stabilization.NONE, compact=True))
-    other.advance(1.0)
+    advance(other, 1.0)
     assert motion.state == pytest.approx(other.state, abs=1e-11)
 
 
