@@ -6,6 +6,7 @@ The series are expanded in batches.
 from typing import Any
 
 import numpy as np
+from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
 from ..program.arithmetic import run_program
@@ -64,9 +65,8 @@ def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[n
     The polynomials have shape (n + g, orders, k).
     """
     n, z = len(problem.coordinates), PROBES * np.exp(1j * PROBES)
-    powers = z[:, None] ** np.arange(series.shape[1])
-    rows = np.moveaxis(series[:n], 1, 2)
-    paths = [np.einsum("ij,nkj->nik", _rates(powers, z, order), rows) for order in range(3)]
+    rates = [polynomial.polyder(np.moveaxis(series[:n], 1, 0), order) for order in range(3)]
+    paths = [np.moveaxis(polynomial.polyval(z, rate), -1, 1) for rate in rates]
     elements = np.zeros((len(z), series.shape[2]), dtype=complex)
     t, state = float(problem.start["t"]) + z[:, None] + elements, [*paths[0], *paths[1]]
     inputs = named_inputs(problem, t, state, elements, [elements + row for row in values])
@@ -75,13 +75,6 @@ def _solves(problem: MotionProblem, series: Floats, values: Floats) -> NDArray[n
         accelerations = np.array([found[name] + elements for name in problem.accelerations])
         missed = np.abs(accelerations - paths[2]) <= SATISFIED * (1 + np.abs(paths[2]))
     return missed.all(axis=(0, 1))
-
-
-def _rates(powers: NDArray[np.complex128], z: NDArray[np.complex128], order: int) -> NDArray[np.complex128]:
-    """Return the terms of a polynomial's derivative at complex places, by coefficient."""
-    n = np.arange(powers.shape[1])
-    falling = np.prod([n - k for k in range(order)], axis=0) if order else 1.0
-    return powers * falling / z[:, None] ** order
 
 
 def _expanded(problem: MotionProblem, states: Floats, values: Floats) -> Floats:

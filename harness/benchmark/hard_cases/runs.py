@@ -17,7 +17,7 @@ from ...program.motion_problem import MotionProblem, motion_problem
 from ...program.request import Request, Solve
 from ...sandbox import Limits
 from ...simulation.hard_cases import Difficulty
-from ...simulation.matrices import Matrix, MotionMatrices, Vector
+from ...simulation.matrices import Matrix, MotionMatrices, Vector, start_of
 from ...simulation.request import FINAL_STATE_ALONE, SimulationRequest
 from ...simulation.simulate import simulate
 from .case import Result, correct_digits, graded
@@ -161,11 +161,10 @@ def baseline_motion(motion: MotionProblem, until: float) -> Vector:
             raise Stuck
         return np.concatenate([state[n:], _bordered_accelerations(*matrices(t, state)[:4])])
 
-    start = np.array([float(motion.start[name]) for name in motion.state])
-    span = (float(motion.start["t"]), until)
+    begin, start = start_of(motion)
     try:
         with warnings.catch_warnings(action="ignore"):
-            found = solve_ivp(rate, span, start, "DOP853", rtol=TOLERANCE, atol=TOLERANCE)
+            found = solve_ivp(rate, (begin, until), start, "DOP853", rtol=TOLERANCE, atol=TOLERANCE)
     except (Stuck, np.linalg.LinAlgError):
         return np.full(2 * n, np.nan)
     return found.y[:, -1] if found.success else np.full(2 * n, np.nan)

@@ -14,6 +14,7 @@ from ...extras import missing_package
 from ...failures import ErrorKind, HolonomError
 from ...program.c_function import compile_c
 from ...program.rewriting import computing
+from ...simulation.matrices import start_of
 from .measurement import Prepared, doubles
 
 if TYPE_CHECKING:
@@ -131,11 +132,10 @@ def prepare_solver(problem: MotionProblem, until: Fraction, solver: Solver, tol:
         The solver, ready to run.
     """
     motion, operations = _compiled_right_hand_side(problem), computing(problem.motion, problem.accelerations).operations
-    span = float(problem.start["t"]), float(until)
-    start = np.array([float(problem.start[name]) for name in problem.state])
+    begin, start = start_of(problem)
 
     def run() -> Floats:
         motion.evaluations = 0
-        return solver(motion, span, start, tol)
+        return solver(motion, (begin, float(until)), start, tol)
 
     return Prepared(run, doubles, lambda: motion.evaluations * operations)

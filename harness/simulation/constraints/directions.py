@@ -43,34 +43,6 @@ class WeightedConstraints:
         """
         return np.linalg.svd(self.directions, compute_uv=False) if self.directions.size else np.empty(0)
 
-    def per_root_mass(self, force: Vector) -> Vector:
-        """Return L^-1 h.
-
-        Parameters
-        ----------
-        force : ndarray, shape (n,)
-            h.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
-        return np.matvec(self.inverse, force)
-
-    def unweighted(self, z: Vector) -> Vector:
-        """Return L^-T z.
-
-        Parameters
-        ----------
-        z : ndarray, shape (n,)
-            Vector in the weighted space, such as L^T a.
-
-        Returns
-        -------
-        ndarray, shape (n,)
-        """
-        return np.vecmat(z, self.inverse)
-
 
 def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     """Put the constraints into the mass metric.

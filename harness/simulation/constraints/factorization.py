@@ -231,17 +231,17 @@ class DependentConstraints(FactoredConstraints):
         -------
         ndarray, shape (n, n - r)
         """
-        return self._weighted.unweighted(self._complement.T).T
+        return self._unweighted(self._complement.T).T
 
     def accelerations(self, force: Vector, curvature: Vector) -> Vector:
         """Return them across Q and along Q (see `FactoredConstraints.accelerations`)."""
         free = np.vecmat(self._weighted_force(force, curvature), self._complement)
         along = np.matvec(self._basis, self._along(curvature))
-        return self._weighted.unweighted(along + np.matvec(self._complement, free))
+        return self._unweighted(along + np.matvec(self._complement, free))
 
     def correction(self, residual: Vector) -> Vector:
         """Return the change along Q (see `FactoredConstraints.correction`)."""
-        return self._weighted.unweighted(np.matvec(self._basis, self._along(residual)))
+        return self._unweighted(np.matvec(self._basis, self._along(residual)))
 
     def unknowns(self, force: Vector, curvature: Vector) -> tuple[Vector, Vector]:
         """Return unknowns outside J^T's null space (see `FactoredConstraints.unknowns`)."""
@@ -254,7 +254,11 @@ class DependentConstraints(FactoredConstraints):
         """Return L^-1 h. If A is singular, h is changed together with A."""
         if self._weighted.stiffening is not None:
             force = force - np.matvec(self._weighted.stiffening, curvature)
-        return self._weighted.per_root_mass(force)
+        return np.matvec(self._weighted.inverse, force)
+
+    def _unweighted(self, z: Vector) -> Vector:
+        """Return L^-T z."""
+        return np.vecmat(z, self._weighted.inverse)
 
     def _along(self, curvature: Vector) -> Vector:
         return -np.matvec(self._inverse, self._weighted.scale * curvature)

@@ -164,8 +164,7 @@ class Watch:
         self._names = [problem.multipliers[beta] for beta in problem.independent]
         self._redundant = len(self._names) < len(problem.multipliers)
         self._matrices = matrices
-        start = [float(problem.start[name]) for name in problem.state]
-        self._scale = self._constraints(float(problem.start["t"]), start).scale
+        self._scale = self._constraints(*start_of(problem)).scale
         self._least = self._least_of_all = 1.0
         self.chosen_alone = False
 

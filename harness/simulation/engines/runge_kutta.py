@@ -28,6 +28,7 @@ from ...program.motion_program import Program
 from ...program.rewriting import computing
 from ...program.sign_pattern import with_values_in
 from ..inputs import named_inputs
+from ..matrices import start_of
 from ..nominal import Nominal
 from ..request import EngineName, Stabilization
 from .code import REFERENCE
@@ -193,8 +194,9 @@ class _DormandPrince(ctypes.Structure):
         nominal: Nominal,
         max_step: float,
     ) -> None:
-        self.state, self.tol = np.array([float(problem.start[name]) for name in problem.state]), tol
-        super().__init__(float(problem.start["t"]), self.state.ctypes.data)
+        begin, self.state = start_of(problem)
+        super().__init__(begin, self.state.ctypes.data)
+        self.tol = tol
         narrow = NO_VECTORS if len(problem.state) < WIDE else ()
         small = UNROLLED if problem.motion.operations < SMALL else ()
         library = load_c("\n".join(_source(problem, stabilization, decay)), *narrow, *small)
