@@ -260,7 +260,8 @@ def in_pieces(
             outputs={name: Name(name) for name in stored} | dict(output for output, _ in outputs),
         )
         stores = [*(f"w[{place_of[name]}] = {{value}};" for name in stored), *(write for _, write in outputs)]
-        text = body_of(statements(piece, target, list(reads.values()), stores), names_of(declared))
+        unused = _unused(names_of(declared), [*reads.values(), *stores])
+        text = _indented([*unused, *statements(piece, target, list(reads.values()), stores)])
         functions.append(f"PIECE void {function}_{number}({declared})\n{{\n{text}\n}}\n\n")
     calls = (f"{function}_{number}({passed});" for number in range(len(parts)))
     return SourceParts(NOT_INLINE + "".join(functions), "\n".join([f"{target.type} w[{size}];", *calls]))
@@ -305,10 +306,18 @@ def body_of(lines: Iterable[str], parameters: Iterable[str]) -> str:
     -------
     str
     """
-    text = "\n".join(lines)
-    words = set(re.findall(r"\w+", text))
-    unused = [name for name in parameters if name not in words]
-    return indent("\n".join([*(f"(void)({name});" for name in unused), text]), " " * 4).rstrip()
+    lines = list(lines)
+    return _indented([*_unused(parameters, lines), *lines])
+
+
+def _unused(parameters: Iterable[str], texts: Iterable[str]) -> Iterator[str]:
+    """Yield casts to void of the parameters that are in none of the texts."""
+    words = set(re.findall(r"\w+", "\n".join(texts)))
+    return (f"(void)({name});" for name in parameters if name not in words)
+
+
+def _indented(lines: Iterable[str]) -> str:
+    return indent("\n".join(lines), " " * 4).rstrip()
 
 
 def batch_support(many: SourceParts) -> str:
@@ -325,10 +334,11 @@ def batch_support(many: SourceParts) -> str:
         Definitions in C.
     """
     arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()} | {"pow": 2}
-    called = set(re.findall(r"\blanes_(\w+)\(", many.functions + many.body))
+    text = many.functions + many.body
+    called = {name: arity for name, arity in arities.items() if f"lanes_{name}(" in text}
     return (
         template("lanes.h")
-        + "".join(LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in arities.items() if name in called)
+        + "".join(LANE_FUNCTIONS[arity].format(name) + "\n" for name, arity in called.items())
         + many.functions
     )
 

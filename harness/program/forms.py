@@ -9,7 +9,7 @@ from ..documents import ask
 from ..extras import naming_the_extra
 from ..failures import ErrorKind, HolonomError
 from ..files import write_files, write_whole
-from ..formats import Document
+from ..formats import Document, nothing_collected
 from ..language import translatable
 from ..sandbox import Limits
 from ..source import Source, source_of
@@ -200,7 +200,8 @@ class MotionProgram:
             from .model import scene_model
 
             model = scene_model(self._source, self._request, parameters, self._source.limits)
-            return module.write_model(model, name or default_name(self._source.file))
+            with nothing_collected():
+                return module.write_model(model, name or default_name(self._source.file))
         if name or parameters:
             raise HolonomError(ErrorKind.NO_NAME_IN_TEXT, detail=form)
         return self.document if module is None else module.write(self.program)
