@@ -39,15 +39,13 @@ class Ending(NamedTuple):
     ]
 
 
-def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Crossing | None:
+def first_event(motion: "HybridMotion", end: Any) -> Crossing | None:
     """Integrate a motion to the first zero crossing of one of its events.
 
     Parameters
     ----------
     motion : HybridMotion
         The motion. It is integrated to the event or to the end.
-    precision : Precision
-        Numbers of the motion.
     end : number
         Last time of the motion.
 
@@ -63,7 +61,7 @@ def first_event(motion: "HybridMotion", precision: Precision, end: Any) -> Cross
     """
     sides: dict[str, int] = {}
     events: dict[Mode, Events] = {}
-    span = float(end - motion.time)
+    span, precision = float(end - motion.time), motion.mode.precision
     for step in motion.integrate(end):
         if step.mode not in events:
             problem, solutions = step.mode.problem, step.mode.engine.solutions

@@ -101,12 +101,12 @@ class HybridMotion:
         As `FallbackEngine`, or the motion starts where the equations leave open how it continues.
     """
 
-    def __init__(self, problem: MotionProblem, request: SimulationRequest, precision: Precision, end: Any) -> None:
+    def __init__(self, problem: MotionProblem, request: SimulationRequest, end: Any) -> None:
         self._span = float(end) - float(problem.start["t"])
-        self._request, self._precision, self._end = request, precision, end
+        self._request, self._precision, self._end = request, request.numbers, end
         self._modes: dict[tuple[Any, ...], Mode] = {}
         self._sides: dict[str, int] = {}  # signs of the conditions of releases, since they left zero
-        self._zero = self._impulse = precision.number("0")
+        self._zero = self._impulse = self._precision.number("0")
         self.switchings: list[Switching] = []
         self.intervals: list[ModeInterval] = []
         self.undetermined: dict[str, None] = {}  # multipliers and outputs that contacts share in several ways
@@ -581,9 +581,7 @@ class HybridMotion:
         key = problem.multipliers, frozenset(pattern.items())
         if key not in self._modes:
             known, friction = self._known, self._lasting_modes(pattern)
-            self._modes[key] = Mode(
-                problem, pattern, self._time_events, self._request, self._precision, self._end, known, friction
-            )
+            self._modes[key] = Mode(problem, pattern, self._time_events, self._request, self._end, known, friction)
         return self._modes[key]
 
     def _started_at(self, t: Any, state: Numbers) -> MotionProblem:

@@ -81,23 +81,8 @@ class InitialStates:
             states[:, here], found[here] = self._in_pattern(pattern)(values[:, here])
         return FoundStates(states, found)
 
-    def changes(self, values: Numbers, states: Numbers) -> tuple[Correction | None, Correction | None]:
-        """Return the largest correction of a datum, and the largest distance from a guess.
-
-        Parameters
-        ----------
-        values : ndarray, shape (p, 1)
-            Open parameters of one motion.
-        states : ndarray, shape (2n, 1)
-            State for these values.
-
-        Returns
-        -------
-        corrected : Correction or None
-            None without a correction.
-        moved : Correction or None
-            None without a guess.
-        """
+    def _changes(self, values: Numbers, states: Numbers) -> tuple[Correction | None, Correction | None]:
+        """Return the largest correction of a datum of one motion, and way from a guess."""
         return self._in_pattern(self._signs(values)[:, 0]).changes(values, states)
 
     @cached_property
@@ -273,7 +258,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
             ErrorKind.NO_INITIAL_STATE, problem.scene, translatable("no state satisfies the constraints")
         )
     found = started(problem, complete, starts.states[:, 0])
-    correction, moved = initial_states.changes(numbers, starts.states)
+    correction, moved = initial_states._changes(numbers, starts.states)
     initial = replace(problem.initial, correction=correction, moved=moved or problem.initial.moved)
     return replace(found, initial=initial)
 

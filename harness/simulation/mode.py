@@ -12,7 +12,6 @@ from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern
 from ..program.motion_problem import DependsOn, MotionProblem
 from ..program.motion_program import Program
-from ..program.precision import Precision
 from ..program.rewriting import computing
 from ..program.sign_pattern import (
     problem_in,
@@ -90,7 +89,7 @@ class Mode:
         Its start is where the motion first has this pattern.
     time_events : mapping of str to TimeEvent
         The signs that the time alone decides.
-    request, precision, end
+    request, end
         As for `HybridMotion`.
     known : dict
         The analytic motions of other modes, as `sharing_programs` keeps them.
@@ -104,24 +103,23 @@ class Mode:
         pattern: Pattern,
         time_events: Mapping[str, TimeEvent],
         request: SimulationRequest,
-        precision: Precision,
         end: Any,
         known: dict[Hashable, MotionProblem],
         friction: FrictionModes | None,
     ) -> None:
-        self.whole, self.pattern, self.precision = problem, pattern, precision
+        self.whole, self.pattern, self.precision = problem, pattern, request.numbers
         self.time_events, self.friction = time_events, friction
         analytic = problem_in(problem, pattern)
         if any(sign.by is DependsOn.TIME for sign in problem.signs):
             analytic = sharing_programs(analytic, known)
-        self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, precision)
+        self.matrices, self._inputs = MotionMatrices(analytic), Inputs(analytic, self.precision)
         obstruction = analytic.obstruction or dependence(analytic, MotionState(self.matrices, *start_of(analytic)))
         self.problem = replace(analytic, obstruction=obstruction)
         energy = self.matrices.nominal.energy(self.matrices(*start_of(analytic)).mass)
-        self.balance = EnergyBalance(self.problem, self._multipliers, precision, energy)
+        self.balance = EnergyBalance(self.problem, self._multipliers, self.precision, energy)
         dense = bool(request.samples != FINAL_STATE_ALONE or self.balance.inner_states)
         dense = None if problem.signs or problem.tables else dense
-        self.engine = FallbackEngine(Task(self.problem, request, precision, end, self.matrices), dense)
+        self.engine = FallbackEngine(Task(self.problem, request, end, self.matrices), dense)
         self._start, self._end = float(problem.start["t"]), float(end)
         self.span = self._end - self._start
         self._gradients = VanishingGradients(self.problem, self.matrices, laws_of(problem), self._end)

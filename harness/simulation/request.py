@@ -3,9 +3,13 @@
 from dataclasses import dataclass
 from enum import StrEnum
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from ..options import option
 from .engines.registry import ENGINES
+
+if TYPE_CHECKING:
+    from ..program.precision import Precision
 
 FINAL_STATE_ALONE = 0
 
@@ -56,3 +60,10 @@ class SimulationRequest:
         spelt=("--sensitivity",),
     )
     compact: bool | None = option(None, "heyoka's compact mode. Default: the faster mode.")
+
+    @property
+    def numbers(self) -> "Precision":
+        """The numbers of the requested precision."""
+        from ..program.precision import read_precision  # imports NumPy, which options do not need
+
+        return read_precision(str(self.precision))

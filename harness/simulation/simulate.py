@@ -128,7 +128,7 @@ def _require_derivatives(problem: MotionProblem, parametrized: MotionProblem, re
     """
     if not request.sensitivities:
         return
-    if read_precision(str(request.precision)).name != "double":
+    if request.numbers.name != "double":
         detail = translatable("they are integrated in double precision alone")
         raise no_sensitivity(detail)
     constants = set(problem.parameters) - set(parametrized.parameters)
@@ -150,15 +150,14 @@ def _require_steps(problem: MotionProblem, request: SimulationRequest) -> None:
 
 def _end_of(problem: MotionProblem, request: SimulationRequest) -> tuple[Any, Ending | None]:
     """Return the last time of a motion and the event that sets it, None without one."""
-    precision = read_precision(str(request.precision))
-    end = last_time(problem, request.until, precision)
+    end = last_time(problem, request.until, request.numbers)
     if not problem.ends.until:
         return end, None
     with (
         doing("looking for the end of the motion"),
-        closing(HybridMotion(_parametrized_problem(problem, request), request, precision, end)) as motion,
+        closing(HybridMotion(_parametrized_problem(problem, request), request, end)) as motion,
     ):
-        event = first_event(motion, precision, end)
+        event = first_event(motion, end)
     if event is None:
         return end, Ending(problem.ends.until, None)
     return event.t, Ending(problem.ends.until, event.name)
@@ -219,10 +218,10 @@ class _Simulation:
         self, problem: MotionProblem, request: SimulationRequest, take: TakeSamples, end: Any, ending: Ending | None
     ) -> None:
         self.problem, self.samples, self.take = problem, request.samples, take
-        self.precision, self.end, self.ending = read_precision(str(request.precision)), end, ending
+        self.precision, self.end, self.ending = request.numbers, end, ending
         self.start = self.precision.number(problem.start["t"])
         begun = time.perf_counter()
-        self.motion = HybridMotion(problem, request, self.precision, self.end)
+        self.motion = HybridMotion(problem, request, self.end)
         self.first, self.begun = self.motion.state.copy(), self.motion.mode
         self.compile_seconds = time.perf_counter() - begun - self.motion.compile_seconds
         zero = self.precision.number("0")

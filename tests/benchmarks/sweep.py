@@ -24,7 +24,6 @@ import heyoka
 import numpy as np
 
 from holonom.program.motion_problem import MotionProblem, motion_problem
-from holonom.program.precision import read_precision
 from holonom.program.request import Request
 from holonom.sandbox import Limits
 from holonom.simulation.engines.engine import advance
@@ -156,8 +155,7 @@ def rows_of_other_engines(base: float) -> Iterator[str]:
 
 
 def engine_seconds(problem: MotionProblem, request: SimulationRequest) -> float:
-    precision = read_precision("double")
-    motion = HybridMotion(_parametrized_problem(problem, request), request, precision, precision.number("10"))
+    motion = HybridMotion(_parametrized_problem(problem, request), request, 10.0)
     return _processor(lambda: advance(motion.mode.engine, 10.0))
 
 

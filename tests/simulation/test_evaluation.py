@@ -110,7 +110,7 @@ def test_a_function_cached_for_all_values_of_a_parameter_is_compiled_at_once(tmp
 def test_all_that_follow_a_motion_ask_the_same_matrices():
     """Each had its own, carried out by NumPy some hundred times before it was compiled."""
     linkage = example("linkage.mac")
-    motion = HybridMotion(linkage, SimulationRequest(until=Fraction(1)), DOUBLE, 1.0)
+    motion = HybridMotion(linkage, SimulationRequest(until=Fraction(1)), 1.0)
     advance(motion, 1.0)  # past a dead centre
     mode = motion.mode
     first, second = mode.engine._first, mode.engine._second

@@ -24,7 +24,7 @@ class ToyEngine:
         problem = task.problem
         self.time, self.state = start_of(problem)
         self.steps, self._n, self._g = 0, len(problem.coordinates), len(problem.multipliers)
-        self._inputs, self._solve = Inputs(problem), evaluation_once(problem, problem.motion, task.precision)
+        self._inputs, self._solve = Inputs(problem), evaluation_once(problem, problem.motion, task.request.numbers)
 
     @classmethod
     def comparable(cls, tol):

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import MotionProblem
-from ...program.precision import Precision, read_precision
 from ..evaluation import Numbers
 from ..hard_cases import Difficulty
 from ..matrices import MotionMatrices
@@ -108,7 +107,6 @@ class Task(NamedTuple):
 
     problem: MotionProblem
     request: SimulationRequest
-    precision: Precision
     end: Any  # the last time, or None for the next one that it reaches
     matrices: MotionMatrices  # of the same motion
 
@@ -127,8 +125,7 @@ class Task(NamedTuple):
         -------
         Task
         """
-        request = SimulationRequest(**asked)
-        return cls(problem, request, read_precision(str(request.precision)), None, MotionMatrices(problem))
+        return cls(problem, SimulationRequest(**asked), None, MotionMatrices(problem))
 
 
 def advance(engine: "Engine", until: Any) -> None:

@@ -171,7 +171,7 @@ class FallbackEngine:
 
     @property
     def _in_doubles(self) -> bool:
-        return self._task.precision.name == "double"
+        return self._task.request.numbers.name == "double"
 
     @property
     def _set_up(self) -> list[Engine]:

@@ -105,7 +105,7 @@ class ProgramEngine:
 
     def __init__(self, task: Task, failed: object) -> None:
         require_signs_known(task.problem)
-        self.precision, self._failed, self._end = task.precision, failed, task.end
+        self.precision, self._failed, self._end = task.request.numbers, failed, task.end
         self.steps, self._longest, self._usual = 0, 0.0, 0.0
         self._problem, self._matrices = task.problem, task.matrices
         self._obstruction: HolonomError | None = None

@@ -71,8 +71,8 @@ class RobustEngine:
     code, compile_seconds, finest = "", 0.0, TIGHTEST
 
     def __init__(self, task: Task) -> None:
-        problem, request, precision, _, self.matrices = task
-        if precision.name != "double":
+        problem, request, _, self.matrices = task
+        if request.numbers.name != "double":
             raise HolonomError(
                 ErrorKind.ROBUST_IS_DOUBLE, detail=problem.obstruction or translatable("--engine asks for it")
             )

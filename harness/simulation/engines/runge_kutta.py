@@ -78,8 +78,8 @@ class RungeKuttaEngine(ProgramEngine):
 
     def __init__(self, task: Task) -> None:
         request = task.request
-        if task.precision.name != "double":
-            raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=task.precision.name)
+        if request.numbers.name != "double":
+            raise HolonomError(ErrorKind.RUNGE_KUTTA_IS_DOUBLE, detail=request.numbers.name)
         super().__init__(task._replace(problem=with_values_in(task.problem)), True)
         self.tol = USUAL if request.tol is None else request.tol
         if not FINEST <= self.tol < 1:

@@ -56,8 +56,8 @@ class TaylorEngine(ProgramEngine):
 
     def __init__(self, task: Task) -> None:
         super().__init__(task, import_heyoka().taylor_outcome.err_nf_state)
-        problem, request, precision, _, matrices = task
-        number, tol = precision.number, request.tol
+        problem, request, _, matrices = task
+        precision, tol, number = self.precision, request.tol, self.precision.number
         digits = precision.digits + GUARD_DIGITS if tol is None else -log10(checked_tolerance(tol, precision))
         require_means(at_start(problem), precision, order_for(digits))
         self._tolerance = {} if tol is None else {"tol": number(repr(tol))}
