@@ -280,24 +280,7 @@ def started(problem: MotionProblem, values: Mapping[str, Fraction], state: Numbe
     MotionProblem
     """
     texts = {name: repr(float(number)) for name, number in zip(problem.state, state, strict=True)}
-    return replace(with_values(problem, values), start={"t": problem.start["t"], **texts})
-
-
-def with_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:
-    """Return the motion with values of its open parameters and its initial state.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        With open parameters.
-    values : mapping of str to Fraction
-        Of all open parameters.
-
-    Returns
-    -------
-    MotionProblem
-    """
-    return replace(problem, values=dict(values))
+    return replace(problem, values=dict(values), start={"t": problem.start["t"], **texts})
 
 
 def least_step(mass: Numbers | None, jacobian: Numbers, residual: Numbers, redundant: bool) -> Numbers:

@@ -163,7 +163,7 @@ def write_files(
         As `require_formats`, or a file cannot be written.
     """
     if samples is not None:
-        write_samples(simulation, samples)
+        _write_samples(simulation, samples)
     if figure is not None:
         from ..figures.motion import draw_motion
 
@@ -172,21 +172,8 @@ def write_files(
         simulation.film().save(film)
 
 
-def write_samples(simulation: Simulation, path: Path) -> None:
-    """Write the samples of a motion.
-
-    Parameters
-    ----------
-    simulation : Simulation
-        The motion.
-    path : Path
-        File to write. Its suffix is .csv, .npz or .parquet.
-
-    Raises
-    ------
-    HolonomError
-        There is no such format, or what it needs is not installed, or the file cannot be written.
-    """
+def _write_samples(simulation: Simulation, path: Path) -> None:
+    """Write the samples of a motion into a file."""
     with sample_file(path, simulation.report.digits) as take:
         take(simulation)
 

@@ -232,7 +232,9 @@ def _entries(argument: str, well_formed: Callable[[Any], bool], given: Any) -> I
 
 
 def _is_list(given: Any) -> bool:
-    return isinstance(given, Collection) and not isinstance(given, str | Mapping)
+    if not isinstance(given, Collection) or isinstance(given, str | Mapping):
+        return False
+    return not any(isinstance(each, str) and "," in each for each in given)
 
 
 def _is_triple(given: Any) -> bool:

@@ -123,8 +123,8 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
     return [zero + found for found in heyoka_expressions(program, known).values()]
 
 
-def constraint_forces(problem: MotionProblem) -> list[Expression]:
-    """Return J^T lambda for each coordinate that a constraint involves.
+def forces_of(problem: MotionProblem) -> tuple[list[Expression], list[Expression]]:
+    """Return the components of J^T lambda that a constraint has, and those of h.
 
     Parameters
     ----------
@@ -133,32 +133,18 @@ def constraint_forces(problem: MotionProblem) -> list[Expression]:
 
     Returns
     -------
-    list of Expression
+    reactions : list of Expression
         Sums of ``J[beta,s]`` times multipliers.
+    others : list of Expression
+        ``h[1]``, ..., ``h[n]``.
     """
-    forces = []
-    for s in range(1, len(problem.coordinates) + 1):
+    places, reactions = range(1, len(problem.coordinates) + 1), []
+    for s in places:
         terms = [
             Call(Operation.MULTIPLY, (Name(f"J[{beta},{s}]"), Name(name)))
             for beta, name in enumerate(problem.multipliers, start=1)
             if f"J[{beta},{s}]" in problem.matrices.outputs
         ]
         if terms:
-            forces.append(Call(Operation.ADD, tuple(terms)))
-    return forces
-
-
-def other_forces(problem: MotionProblem) -> list[Expression]:
-    """Return the components of h.
-
-    Parameters
-    ----------
-    problem : MotionProblem
-        The motion.
-
-    Returns
-    -------
-    list of Expression
-        ``h[1]``, ..., ``h[n]``.
-    """
-    return [Name(f"h[{s}]") for s in range(1, len(problem.coordinates) + 1)]
+            reactions.append(Call(Operation.ADD, tuple(terms)))
+    return reactions, [Name(f"h[{s}]") for s in places]

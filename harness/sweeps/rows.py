@@ -44,7 +44,7 @@ from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size
 from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output
-from .quantities import along_motion, constraint_forces, expressions_of, other_forces, require_known
+from .quantities import along_motion, expressions_of, forces_of, require_known
 from .request import TOLERANCE
 from .series import batch_radii
 from .single import SingleMotions
@@ -109,7 +109,7 @@ class RowMaker:
         self._extremes = [output for output in plan.outputs if output.kind in EXTREMES]
         self._zeros = [output for output in plan.outputs if output.kind is Kind.ZERO]
         free = any(output.kind is Kind.FREE for output in plan.outputs)
-        self._free = (constraint_forces(problem), other_forces(problem)) if free else ([], [])
+        self._free = forces_of(problem) if free else ([], [])
         self._along = [*(output.quantity for output in self._extremes), *self._free[0], *self._free[1]]
         self._crossing = [output.quantity for output in self._zeros]
         self._seen_outputs = [*self._extremes, *(each for each in plan.outputs if each.kind is Kind.FREE), *self._zeros]

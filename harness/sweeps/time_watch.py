@@ -7,6 +7,7 @@ degree in the time have no localized features, so they are not examined.
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -16,7 +17,6 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.rewriting import with_numbers
 from ..simulation.constraints.singularity import laws_of, zeros_of_controls
-from ..simulation.initial_state import with_values
 from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence
 from ..simulation.time_events import DEGREE
 
@@ -73,7 +73,7 @@ class TimeWatch:
         if key not in self._known:
             numbers = {name: Fraction(float(x)) for name, x in zip(self._problem.parameters, row, strict=True)}
             by_time = self._dependence(numbers)
-            crossing = zeros_of_controls(with_values(self._problem, numbers), self._laws, self._start, self._end)
+            crossing = zeros_of_controls(replace(self._problem, values=numbers), self._laws, self._start, self._end)
             alone = bool(crossing) or by_time.end is not None or by_time.unresolved is not None
             self._known[key] = alone, by_time.stops
         return self._known[key]

@@ -10,7 +10,7 @@ from pyarrow import parquet
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.simulation.output import streams, write_samples
+from holonom.simulation.output import _write_samples, streams
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Simulation
 from holonom.simulation.simulate import simulate
@@ -41,7 +41,7 @@ READERS = {
 @pytest.mark.parametrize("suffix", READERS)
 def test_samples_are_read_back_to_the_last_bit(swing, tmp_path, suffix):
     path = tmp_path / f"swing{suffix}"
-    write_samples(swing, path)
+    _write_samples(swing, path)
     read = READERS[suffix](path)
     assert list(read) == ["t", "x", "y", "dot(x)", "dot(y)", "lambda1"]
     for name, samples in swing.columns():
@@ -55,7 +55,7 @@ def test_arrays_of_numpy_are_written_at_once_and_other_formats_sample_by_sample(
 @pytest.mark.parametrize("suffix", READERS)
 def test_more_digits_than_a_double_has_are_text(quadruple_swing, tmp_path, suffix):
     path = tmp_path / f"swing{suffix}"
-    write_samples(quadruple_swing, path)
+    _write_samples(quadruple_swing, path)
     last = str(READERS[suffix](path)["x"][-1])
     assert len(last) > 34
     assert abs(float(last) - float(quadruple_swing.coordinates["x"][-1])) < 1e-16
@@ -64,13 +64,13 @@ def test_more_digits_than_a_double_has_are_text(quadruple_swing, tmp_path, suffi
 @pytest.mark.parametrize("name", ["swing.xlsx", "swing"])
 def test_an_unknown_format_is_refused(swing, tmp_path, name):
     with failing(ErrorKind.NO_SUCH_FORMAT, ".csv, .npz, .parquet"):
-        write_samples(swing, tmp_path / name)
+        _write_samples(swing, tmp_path / name)
 
 
 @pytest.mark.parametrize("suffix", READERS)
 def test_a_file_that_cannot_be_written_is_not_there(swing, tmp_path, suffix):
     with failing(ErrorKind.UNWRITABLE):
-        write_samples(swing, tmp_path / "missing" / f"swing{suffix}")
+        _write_samples(swing, tmp_path / "missing" / f"swing{suffix}")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -79,4 +79,4 @@ def test_a_full_disk_is_one_sentence(swing, tmp_path):
     path = tmp_path / "swing.csv"
     path.symlink_to("/dev/full")
     with failing(ErrorKind.DISK_FULL, "No space left on device"):
-        write_samples(swing, path)
+        _write_samples(swing, path)

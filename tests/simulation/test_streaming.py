@@ -13,7 +13,7 @@ from refusing import failing
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem
 from holonom.simulation import output, recording
-from holonom.simulation.output import require_disk, sample_file, write_samples
+from holonom.simulation.output import _write_samples, require_disk, sample_file
 from holonom.simulation.request import SimulationRequest
 from holonom.simulation.result import Sampled
 from holonom.simulation.simulate import _EnergyStatistics, integrate, simulate
@@ -70,7 +70,7 @@ def test_a_file_written_in_parts_holds_what_one_written_at_once_does(lengthening
     with sample_file(tmp_path / f"parts{suffix}", 17) as take:
         for part in parts:
             take(part)
-    write_samples(simulate(lengthening, SimulationRequest(until=3, samples=SAMPLES)), tmp_path / f"whole{suffix}")
+    _write_samples(simulate(lengthening, SimulationRequest(until=3, samples=SAMPLES)), tmp_path / f"whole{suffix}")
     read = parquet.read_table if suffix == ".parquet" else Path.read_text
     assert read(tmp_path / f"parts{suffix}") == read(tmp_path / f"whole{suffix}")
 
@@ -100,7 +100,7 @@ def test_more_than_the_disk_holds_is_refused_before_the_motion(lengthening, tmp_
 def test_a_sample_takes_no_more_of_the_disk_than_is_stated(lengthening, tmp_path, suffix):
     simulation = simulate(lengthening, SimulationRequest(until=3, samples=3000))
     file = tmp_path / f"swing{suffix}"
-    write_samples(simulation, file)
+    _write_samples(simulation, file)
     numbers = sum(len(column) for _, column in simulation.columns())
     assert 0.5 < file.stat().st_size / (numbers * output.BYTES_ON_DISK[suffix]) <= 1.1
 

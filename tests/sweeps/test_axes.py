@@ -83,6 +83,7 @@ def test_values_of_an_array_were_asked_for_their_truth():
         ({1: (1, 2, 3)}, None, None),
         (None, {"m": 2}, None),
         (None, {"m": "1,2"}, None),
+        (None, {"m": ["1,2"]}, None),
         (None, None, {"m": (0, 1)}),
     ],
 )

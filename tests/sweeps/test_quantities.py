@@ -7,7 +7,7 @@ from refusing import failing
 
 from holonom.failures import ErrorKind
 from holonom.program.motion_program import Call, Name, Operation, names_in
-from holonom.sweeps.quantities import constraint_forces, observed_names, other_forces, require_known, solved_names
+from holonom.sweeps.quantities import forces_of, observed_names, require_known, solved_names
 
 
 @pytest.fixture(scope="module")
@@ -17,14 +17,14 @@ def problem(rows_of):
 
 
 def test_constraint_forces_are_gradients_times_multipliers(problem):
-    found = constraint_forces(problem)
+    found, _ = forces_of(problem)
     assert [each.operation for each in found] == [Operation.ADD] * len(found)
     terms = [[set(names_in(term)) for term in each.arguments] for each in found]
     assert terms == [[{f"J[1,{s}]", problem.multipliers[0]}] for s in (1, 2)]
 
 
 def test_other_forces_are_one_for_each_coordinate(problem):
-    assert other_forces(problem) == [Name(f"h[{s}]") for s in range(1, len(problem.coordinates) + 1)]
+    assert forces_of(problem)[1] == [Name(f"h[{s}]") for s in range(1, len(problem.coordinates) + 1)]
 
 
 def test_names_are_those_that_the_motion_has(problem):

@@ -16,7 +16,6 @@ from ...language import translatable
 from ...program.expense import order_for
 from ...program.motion_problem import MotionProblem
 from ...program.precision import Precision, read_precision
-from ...program.request import Solve
 from ...program.rewriting import computing
 from ...simulation.engines.engine import Engine, Task, advance
 from ...simulation.engines.runge_kutta import RungeKuttaEngine
@@ -48,21 +47,6 @@ def taylor_name(precision: str) -> str:
     if precision.isdecimal():
         return translatable("Taylor, %(digits)s digits", digits=precision)
     return translatable("Taylor, %(precision)s", precision=precision)
-
-
-def solve_name(solve: Solve) -> str:
-    """Return the name of the Taylor engine on the program of one solve.
-
-    Parameters
-    ----------
-    solve : Solve
-        Solve for the multipliers.
-
-    Returns
-    -------
-    str
-    """
-    return translatable("solve: %(solve)s", solve=solve)
 
 
 def prepare_taylor(

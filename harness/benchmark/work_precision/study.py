@@ -25,7 +25,6 @@ from .engines import (
     operations_of_a_step,
     prepare_runge_kutta,
     prepare_taylor,
-    solve_name,
     taylor_name,
 )
 from .measurement import EXACT_TIME, BenchmarkCase, Group, Measurement, Omission, Prepared
@@ -154,7 +153,7 @@ def _problems(source: Source, request: Request, plan: Plan) -> tuple[list[Motion
     other = next(solve for solve in Solve if solve is not request.solve)
     by_other = motion_problem(source, replace(request, solve=other), source.limits, digits)
     if by_other.obstruction is not None:
-        return [problem], [Omission(solve_name(other), "all tolerances", by_other.obstruction)]
+        return [problem], [Omission(_solve_name(other), "all tolerances", by_other.obstruction)]
     return [problem, by_other], []
 
 
@@ -184,6 +183,10 @@ def _within_reach(plan: Plan, problem: MotionProblem, until: Fraction) -> tuple[
         reason = f"its reference would take about {seconds:.2g} s, more than {plan.longest_reference:g} s"
         beyond.append(Omission(taylor_name(precision), "all tolerances", reason))
     return replace(plan, tolerances=tolerances), beyond
+
+
+def _solve_name(solve: Solve) -> str:
+    return translatable("solve: %(solve)s", solve=solve)
 
 
 def _expansion(problem: MotionProblem, until: Fraction) -> tuple[Expansion | None, list[Omission]]:
@@ -244,4 +247,4 @@ def _methods(problems: Sequence[MotionProblem], until: Fraction, plan: Plan) -> 
         name = translatable("stabilization: %(method)s", method=each)
         yield Group.STABILIZATION, name, compared, partial(prepare_taylor, problem, until, "double", stabilization=each)
     for each in problems:
-        yield Group.SOLVE, solve_name(each.motion.solve), compared, partial(prepare_taylor, each, until, "double")
+        yield Group.SOLVE, _solve_name(each.motion.solve), compared, partial(prepare_taylor, each, until, "double")

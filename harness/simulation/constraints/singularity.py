@@ -318,24 +318,7 @@ class VanishingGradients:
         lost = np.flatnonzero(left < VANISHED * whole)
         if len(lost):
             time = self.times[self.stops.index(stop)]
-            raise no_gradient(time, self._problem.multipliers[lost[0]])
-
-
-def no_gradient(t: float, multiplier: str) -> HolonomError:
-    """Return the error of a motion at a time of a vanishing constraint gradient.
-
-    Parameters
-    ----------
-    t : float
-        Time of the vanishing gradient.
-    multiplier : str
-        Name of the constraint's multiplier.
-
-    Returns
-    -------
-    HolonomError
-    """
-    return HolonomError(ErrorKind.NO_GRADIENT, time=float(t), multiplier=multiplier)
+            raise HolonomError(ErrorKind.NO_GRADIENT, time=time, multiplier=self._problem.multipliers[lost[0]])
 
 
 def no_controls(t: float) -> HolonomError:

@@ -20,7 +20,7 @@ from ...program.motion_problem import require_signs_known
 from ...program.motion_program import Operation, calls_of
 from ..accuracy_check import has_root_of
 from ..constraints.factorization import factored_constraints
-from ..constraints.singularity import Watch, no_controls, no_gradient
+from ..constraints.singularity import Watch, no_controls
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
@@ -283,7 +283,7 @@ class ProgramEngine:
             return HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, SHORT_STEPS))
         if vanished not in self._problem.reactions:
             return no_controls(t)
-        return no_gradient(t, vanished)
+        return HolonomError(ErrorKind.NO_GRADIENT, time=t, multiplier=vanished)
 
     @cached_property
     def _has_roots(self) -> bool:

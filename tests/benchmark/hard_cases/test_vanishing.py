@@ -7,11 +7,11 @@ import pytest
 from problems import problem as example
 from refusing import failing
 
-from holonom.failures import ErrorKind
+from holonom.failures import ErrorKind, HolonomError
 from holonom.program.motion_problem import MotionProblem, motion_problem
 from holonom.program.request import Request
 from holonom.sandbox import Limits
-from holonom.simulation.constraints.singularity import VanishingGradients, laws_of, no_gradient, zeros_of_controls
+from holonom.simulation.constraints.singularity import VanishingGradients, laws_of, zeros_of_controls
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import FINAL_STATE_ALONE, EngineName, SimulationRequest
 from holonom.simulation.simulate import simulate
@@ -112,7 +112,7 @@ def test_motion_goes_on_past_a_zero_at_which_the_bob_is_far_from_the_hinge(descr
 
 
 def test_a_refusal_holds_what_its_sentence_is_made_of_also_from_another_process():
-    refused = no_gradient(1.0, "lambda1")
+    refused = HolonomError(ErrorKind.NO_GRADIENT, time=1.0, multiplier="lambda1")
     again = pickle.loads(pickle.dumps(refused))
     assert again.facts == {"time": 1.0, "multiplier": "lambda1"}
     assert str(again) == str(refused)
