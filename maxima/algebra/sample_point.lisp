@@ -209,11 +209,12 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
   "Newton's corrections of residuals that are at most so large; nil where floating point has none, or none is needed."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
-         (found (if (plusp size)
+         (scale (if (plusp size) (expt 2 (binary-magnitude size)))) ; of two alone: few digits are added to coordinates
+         (found (if scale
                     (errset (catch 'irregular-point
-                              (corrections-of (mapcar #'(lambda (r) (float-of (/ r size))) residuals)
+                              (corrections-of (mapcar #'(lambda (r) (float-of (/ r scale))) residuals)
                                               (converted-point point #'float-of)))))))
-    (if (car found) (mapped-corrections #'(lambda (column value) (* size (rational value))) (car found)))))
+    (if (car found) (mapped-corrections #'(lambda (column value) (* scale (rational value))) (car found)))))
 
 (defun float-of (number) (float number 1d0))
 
