@@ -1,7 +1,9 @@
 """The premises of a motion, changed one at a time, and a start on another branch than the guess chooses."""
 
+import json
 from dataclasses import replace
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
 from mpmath import mp
@@ -13,13 +15,18 @@ from holonom.crosscheck.motion_series import verify_series
 from holonom.crosscheck.motion_start import nearer_start
 from holonom.crosscheck.motion_states import States
 from holonom.crosscheck.motions import read_motions, verdicts_out_of_time
+from holonom.crosscheck.premises import Premises, differences
 from holonom.crosscheck.questions import ask_for_check
 from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.switches import law_times
+from holonom.documents import ask
+from holonom.formats import Document
 from holonom.program.motion_program import Call, Name, Operation
 from holonom.program.request import Solve
+from holonom.record import read_record
 from holonom.source import Source
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENE = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = m*y, constraints = [x^2 + y^2 - u^2])$
@@ -122,6 +129,24 @@ def test_only_a_nearer_start_is_reported(asked):
         start = {name: mp.mpf(text) for name, text in programs.problems[Solve.DIRECT].start.items()}
         assert nearer_start(motion, start) == ""
         assert "nearer to the guess" in nearer_start(motion, start | {"y": -start["y"], "dot(y)": -start["dot(y)"]})
+
+
+def test_a_record_that_starts_on_the_other_branch_differs_from_its_guess(asked, tmp_path):
+    description, *_ = asked
+    (tmp_path / "scene.mac").write_text(SCENE, encoding="utf-8")
+    record = json.loads(ask(Document.RECORD, Source(tmp_path / "scene.mac")))
+    assert [*differences(read_record(json.dumps(record)), Premises(description))] == []
+    state = record["scenes"][0]["initial_state"]
+    state |= {name: ["Multiply", -1, state[name]] for name in ("y", "dot(y)")}
+    found = differences(read_record(json.dumps(record)), Premises(description))
+    assert [each.what for each in found] == ["initial_guess"]
+
+
+@pytest.mark.parametrize("name", ["prescribed_tension", "overhead_crane"])
+def test_scenes_that_move_other_systems_are_in_no_record(name):
+    description = Source(EXAMPLES / f"{name}.mac").description()
+    assert description.scenes
+    assert Premises(description).scenes == ()
 
 
 def test_every_fourth_state_is_on_either_side_of_zero(asked):

@@ -11,13 +11,14 @@ from refusing import failing
 
 from holonom.expression.infix import atom
 from holonom.failures import ErrorKind
-from holonom.program.c_function import compile_c, load_c
+from holonom.program.c_function import compile_c, has_compiler, load_c
 from holonom.program.c_source import MANY, ONE, c_source
 
 
 def test_without_a_compiler_one_sentence_says_so(monkeypatch, tmp_path):
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
+    assert not has_compiler()
     with failing(ErrorKind.COMPILER_MISSING):
         compile_c(PENDULUM)
 

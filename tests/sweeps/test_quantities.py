@@ -1,5 +1,6 @@
 """Quantities of sweeps that are made of a motion's own: against Lagrange's equations by hand."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import pytest
@@ -30,6 +31,8 @@ def test_other_forces_are_one_for_each_coordinate(problem):
 def test_names_are_those_that_the_motion_has(problem):
     assert solved_names(problem)[: len(problem.coordinates)] == tuple(f"ddot({q})" for q in problem.coordinates)
     assert set(problem.multipliers) <= set(solved_names(problem))
+    observed = solved_names(replace(problem, observe=["constraint_forces"]))
+    assert observed == (*problem.accelerations, *problem.multipliers, "Lambda[1]", "Lambda[2]")
     for name in ("t", "energy", *problem.state, *solved_names(problem), *observed_names(problem), *problem.parameters):
         require_known(problem, [Name(name), Call(Operation.ADD, (Name(name), Fraction(1)))])
     with failing(ErrorKind.NOT_AN_OUTPUT, "nowhere"):
