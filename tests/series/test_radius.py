@@ -83,6 +83,9 @@ def test_radius_of_a_branch_point_is_inside_its_uncertainty_at_every_order(z, ex
     with mpmath.workdps(DIGITS):
         row = branch_point(z, exponent)
     require_truth_inside([row], abs(z))
+    places = estimates([row], [40])[40].singularities
+    assert min(abs(place - z) for place in places) < 1e-6 * abs(z)
+    assert min(abs(place - z.conjugate()) for place in places) < 1e-6 * abs(z)
 
 
 @pytest.mark.parametrize("z", [3, 1 + 1j, -1 + 0.2j])

@@ -1,0 +1,30 @@
+"""Programs made of others: operations on numbers are done when they are written."""
+
+from fractions import Fraction
+
+import pytest
+
+from holonom.program.motion_program import Call, Name, Operation
+from holonom.program.rewriting import ONE, ZERO, folded
+
+X, Y = Name("x"), Name("y")
+
+
+@pytest.mark.parametrize(
+    ("operation", "arguments", "expected"),
+    [
+        (Operation.ADD, [X, ZERO], X),
+        (Operation.ADD, [X, Fraction(2), Y, Fraction(3)], Call(Operation.ADD, (Fraction(5), X, Y))),
+        (Operation.ADD, [X, Call(Operation.NEGATE, (X,))], ZERO),
+        (Operation.MULTIPLY, [ONE, X], X),
+        (Operation.MULTIPLY, [Fraction(2), X, Fraction(1, 2)], X),
+        (Operation.MULTIPLY, [Fraction(2), Fraction(3)], Fraction(6)),
+        (Operation.MULTIPLY, [X, ZERO], ZERO),
+        (Operation.SUBTRACT, [X, X], ZERO),
+        (Operation.SUBTRACT, [ZERO, X], Call(Operation.NEGATE, (X,))),
+        (Operation.DIVIDE, [X, ONE], X),
+        (Operation.POWER, [ZERO, Fraction(-1)], Call(Operation.POWER, (ZERO, Fraction(-1)))),
+    ],
+)
+def test_what_numbers_leave_of_an_operation(operation, arguments, expected):
+    assert folded(operation, arguments) == expected
