@@ -142,7 +142,9 @@ class _ModeVariation:
         integrator.propagate_until(end / unit, write_tc=True, callback=steps)
         if integrator.time != end / unit or not np.isfinite(integrator.state).all():
             raise no_sensitivity(
-                translatable("they are not finite beyond t = %(time)s", time=f"{steps.last * unit:.6g}")
+                translatable(
+                    "their integration gives no finite numbers beyond t = %(time)s", time=f"{steps.last * unit:.6g}"
+                )
             )
         reached, grown = np.split(integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
