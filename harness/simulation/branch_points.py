@@ -1,15 +1,14 @@
 """Modes that end or begin at a branch point, as contacts with a force of Hertz do.
 
 Engines take ever shorter steps before a branch point, and do not reach it. The rest of the time is so short that the
-accelerations are constant to rounding. Behind it, rounding may leave the state on the other side, where the force is
-not real.
+accelerations are constant to rounding. Behind it, rounding or the projection onto the constraints may leave the state
+on the other side, where the force is not real.
 """
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..program.precision import Precision
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats
 from .events import Values
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
 REST = 1e-8  # of the time span: how long before a branch point engines give up
 CONSTANT = 1e-13  # of the nominal velocities: changes of the velocities that rounding hides
-DOUBLINGS = 10  # of the smallest change of the time
+DOUBLINGS = 10  # of the least time
 
 
 def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step | None:
@@ -62,8 +61,8 @@ def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step |
     return step if (lost <= CONSTANT * nominal.velocities).all() else None
 
 
-def real_state(functions: Values, t: Any, state: Numbers, nominal: Nominal, precision: Precision) -> Numbers:
-    """Return a state in which accelerations are real, moved within rounding.
+def real_state(functions: Values, t: Any, state: Numbers, least: Any) -> Numbers:
+    """Return a state in which accelerations are real, moved within the tolerance.
 
     Parameters
     ----------
@@ -73,23 +72,20 @@ def real_state(functions: Values, t: Any, state: Numbers, nominal: Nominal, prec
         Time of the state.
     state : ndarray, shape (2n,)
         Coordinates, then velocities.
-    nominal : Nominal
-        Nominal sizes of the state.
-    precision : Precision
-        Numbers of the motion.
+    least : number
+        Least time along the velocities that counts.
 
     Returns
     -------
     ndarray, shape (2n,)
         `state` itself if no such state is found.
     """
-    n, least = len(state) // 2, precision.rounding * max(abs(t), precision.number(repr(float(nominal.time))))
+    n, later = len(state) // 2, 0 * least
 
     def is_real(later: Any) -> bool:
         moved = np.concatenate([state[:n] + later * state[n:], state[n:]])
         return bool(np.isfinite(as_floats(functions(np.array([t]), moved[:, None])[:n])).all())
 
-    later = precision.number("0")
     for doubling in range(DOUBLINGS):
         if is_real(later) and is_real(later - least):
             return np.concatenate([state[:n] + later * state[n:], state[n:]])

@@ -262,7 +262,7 @@ class FrictionModes:
                 size = signs.get(name, known) * terms.sizes[place]
                 own = np.arange(len(self._unknown))[:, None] == place
                 rows.append([*(own - size[:-1]), size[-1]])
-        equations = np.moveaxis(np.array(rows).reshape(len(rows), len(rows) + 1, -1), -1, 0)
+        equations = np.moveaxis(np.reshape(rows, (len(rows), len(rows) + 1, len(terms.regular))), -1, 0)
         return equations[:, :, :-1], equations[:, :, -1]
 
     def _sides_of(self, name: str, count: int) -> Vector:

@@ -375,16 +375,23 @@ class HybridMotion:
 
     def _real_state(self, pattern: Pattern, t: Any, state: Numbers) -> Numbers:
         """Return the state, moved to where accelerations of a pattern are real."""
+        solved = self._with_roots(pattern)
+        if solved is None:
+            return state
+        number = self._precision.number
+        share = max(self._precision.rounding, number(repr(self.mode.engine.tol)))
+        least = share * max(abs(t), number(repr(float(self.nominal.time))))
+        return real_state(lambda *at: solved(self._inputs(*at)), t, state, least)
+
+    def _with_roots(self, pattern: Pattern) -> Evaluation | None:
+        """Return the accelerations of a pattern, None if they contain no roots."""
 
         def build() -> Evaluation | None:
             motion = program_in(self.problem, self.problem.motion, pattern)
             has_root = has_root_of(motion, self.problem.state)
             return evaluation_once(self.problem, motion, self._precision) if has_root else None
 
-        solved = self._once((real_state, frozenset(pattern.items())), build)
-        if solved is None:
-            return state
-        return real_state(lambda *at: solved(self._inputs(*at)), t, state, self.nominal, self._precision)
+        return self._once((has_root_of, frozenset(pattern.items())), build)
 
     def _is_decided_by_accelerations(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Return True if the accelerations on both sides decide about a sign that is zero."""
@@ -431,7 +438,7 @@ class HybridMotion:
             names = self._of(modes.rough)
             self._reject(t, translatable("%(sign)s slides under several forces that contain multipliers", sign=names))
         if found and all(found[0].is_shared_as(each) for each in found):
-            return found[0].pattern
+            return min((each.pattern for each in found), key=lambda pattern: self._with_roots(pattern) is not None)
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
         shared = modes.shared(found, self._inputs(t, state)) if one else None
         if shared:

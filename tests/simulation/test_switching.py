@@ -436,3 +436,43 @@ def test_friction_sticks_from_rest_until_the_force_is_larger(force, span, end, e
 def test_a_switching_function_contained_a_symbol_for_another_sign(force, function):
     report = end_of(mass(force=force, x="1/10", v="1", end="1"))
     assert function in {switching.function for switching in report.switchings}
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize("force", ["-9*max(0, x)^(3/2) - 1", "if x > 0 then -1 - sqrt(x) else -1"])
+def test_a_start_at_rest_on_the_surface_of_a_root_ended_in_an_internal_error(force, engine):
+    report = end_of(mass(force=force), engine)
+    assert report.coordinates["x"] == pytest.approx(-1 / 2, abs=DIGITS[engine])
+
+
+WALL = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y, v, w],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(v)^2 + dot(w)^2)/2, potential_energy = 10*(y + w),
+  forces = [0, 0, {force}, 0], constraints = [x^2 + y^2 - 1/4, (v - x)^2 + (w - y)^2 - 1/4])$
+scene : holonomic_scene(system, initial_state = [x = 1/2, y = 0, v = 1/2, w = -1/2, dot(x) = 0, dot(y) = 0,
+  dot(v) = 0, dot(w) = 0], time_span = [0, 1/4])$"""
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_steps_were_tiny_where_a_motion_leaves_a_wall_with_zero_acceleration(engine):
+    report = end_of(asked(WALL.format(force="-50*max(0, v - 1/2)^(3/2)")), engine)
+    free = end_of(asked(WALL.format(force="0")))
+    assert dict(report.coordinates) == pytest.approx(dict(free.coordinates), abs=DIGITS[engine])
+    assert not report.switchings
+
+
+DRIFT = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x1, y1, x2, y2, x3, y3], kinetic_energy = dot(x1)^2 + dot(y1)^2 +
+  dot(x2)^2 + dot(y2)^2 + (dot(x3)^2 + dot(y3)^2)/2, potential_energy = 20*y1 + 20*y2 + 10*y3,
+  forces = [-signum(x1 - 1/8), 0, if x2 < -1/4 then -5*(x2 + 1/4) - dot(x2) else 0, 0,
+    -100*max(0, x3 - 1/8)^(3/2), 0],
+  constraints = [x1^2 + y1^2 - 1/4, (x2 - x1)^2 + (y2 - y1)^2 - 1/4, (x3 - x2)^2 + (y3 - y2)^2 - 1/4])$
+scene : holonomic_scene(system, initial_state = [x1 = 1/2, y1 = 0, x2 = 9/13, y2 = -6/13, x3 = 23/26, y3 = -12/13,
+  dot(x1) = 0, dot(y1) = 0, dot(x2) = 0, dot(y2) = 0, dot(x3) = 0, dot(y3) = 0], time_span = [0, 2])$"""
+
+
+def test_the_way_back_to_constraints_left_a_state_on_the_wrong_side_of_a_root():
+    problem = asked(DRIFT)
+    reports = [end_of(problem, engine) for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)]
+    assert [len(report.switchings) for report in reports] == [7, 7]
+    assert dict(reports[1].coordinates) == pytest.approx(dict(reports[0].coordinates), abs=1e-9)

@@ -39,7 +39,7 @@ SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
 LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
 ROUNDED = 16.0  # times what the last bit of the state changes the accelerations by: rounding
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
-NO_SLOPE = translatable("a force has no slope there, so that the motion may not be unique")
+NO_SLOPE = translatable("a force is not smooth there, so that the motion may not be unique")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
 CHOICE = translatable(
     "the independent constraints that come first, which are solved, become dependent and later ones do not: list "
