@@ -140,6 +140,9 @@ def test_a_record_that_starts_on_the_other_branch_differs_from_its_guess(asked, 
     state |= {name: ["Multiply", -1, state[name]] for name in ("y", "dot(y)")}
     found = differences(read_record(json.dumps(record)), Premises(description))
     assert [each.what for each in found] == ["initial_guess"]
+    record["scenes"][0]["title"] = "Kreis"
+    found = differences(read_record(json.dumps(record)), Premises(description))
+    assert ["Kreis" in each.detail for each in found] == [False, True]
 
 
 @pytest.mark.parametrize("name", ["prescribed_tension", "overhead_crane"])

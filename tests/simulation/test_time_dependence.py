@@ -3,12 +3,15 @@
 from fractions import Fraction
 
 import pytest
+from refusing import failing
 
 import holonom
 from holonom.explanations import notes, unresolved
+from holonom.failures import ErrorKind
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
 from holonom.simulation import time_dependence as scan
+from holonom.simulation.mode import TOO_OFTEN
 from holonom.simulation.time_dependence import NOT_SMOOTH, TimeDependence, _time_expressions, time_dependence
 
 T, X = Name("t"), Name("x")
@@ -113,3 +116,13 @@ shaken : holonomic_scene(system, parameter_values = [k = 1], initial_state = [x 
     (noted,) = (note for note in notes(report) if note == unresolved(0.0))
     rows = holonom.sweep(scene, values={"k": [1, 2]}, keep=["x"], workers=1).to_pandas()
     assert rows[["status", "note"]].to_numpy().tolist() == [["ok", noted]] * 2
+
+
+def test_a_sign_that_changes_too_often_is_followed_no_further(monkeypatch):
+    monkeypatch.setattr(scan, "MOST", 4)
+    scene = holonom.system("""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+  forces = [signum(sin(1000*t))])$
+driven : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 1])$
+""")
+    with failing(ErrorKind.NO_WAY_ON, str(TOO_OFTEN)):
+        scene.simulate(samples=2)
