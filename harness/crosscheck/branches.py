@@ -24,7 +24,7 @@ RANGE = 2
 """Of their argument, around zero."""
 
 MOST_SIGNS = 3
-"""Signs whose cases are looked at one by one."""
+"""Signs in an argument whose cases are looked at."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Branch:
         -------
         bool
         """
-        return _is_never(side, self.argument, MOST_SIGNS)
+        return _is_never(side, self.argument)
 
     def target(self, draw: random.Random) -> mp.mpf:
         """Return a value of the argument near which points are drawn.
@@ -70,12 +70,13 @@ class Branch:
         return mp.mpf(draw.uniform(-RANGE, RANGE)) if self.is_growing else mp.zero
 
 
-def _is_never(side: int, argument: sp.Expr, most: int) -> bool:
+def _is_never(side: int, argument: sp.Expr) -> bool:
     """Return True if an argument is on a side of zero for none of its signs."""
-    parts = sorted(argument.atoms(sp.Abs, sp.sign), key=sp.default_sort_key) if most else []
-    by_signs = [cases for part in parts if (cases := _cases_by_sign(argument, part.args[0]))]
+    functions = {part.args[0] for part in argument.atoms(sp.Abs, sp.sign)}
+    few = sorted(functions, key=sp.default_sort_key) if len(functions) <= MOST_SIGNS else []
+    by_signs = [cases for g in few if (cases := _cases_by_sign(argument, g))]
     if by_signs:
-        return any(all(_is_never(side, case, most - 1) for case in cases) for cases in by_signs)
+        return any(all(_is_never(side, case) for case in cases) for cases in by_signs)
     argument = argument.replace(lambda part: part.is_real is None and _branch(part) is not None, _real)
     argument = argument.replace(_is_inverse_square, lambda part: sp.Dummy(positive=True))
     bounds = argument.replace(_is_bounded, lambda part: sp.AccumBounds(-1, 1))

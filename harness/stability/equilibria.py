@@ -195,7 +195,7 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time, a control has no value, or a velocity's sign decides forces.
+        The equations contain the time, a control has no value, or signs of the time or of velocities decide.
     """
     require_analytic(replace(problem, signs=tuple(s for s in problem.signs if s.by is not DependsOn.CONFIGURATION)))
     require_laws(problem)

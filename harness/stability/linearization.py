@@ -366,6 +366,8 @@ def changing_function(problem: MotionProblem, t: float, state: Vector) -> str | 
     str or None
         None between switchings.
     """
+    if not problem.signs:
+        return None
     nominal, names = nominal_of(problem), ("t", *problem.state)
     points = np.array([t, *state])[:, None] + np.diag([0.0, nominal.time, *nominal.state])[1:]
     known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}

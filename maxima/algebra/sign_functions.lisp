@@ -86,15 +86,15 @@
            (some #'calls-p (cdr e)))))
 
 ;; A branch of weight zero is dropped where the signs are put in; elsewhere it has a value, too.
-(defun conditional-with-signs (clauses)
-  "Clauses are condition, value, condition, value, ... as Maxima keeps them."
+(defun conditional-with-signs (clauses &optional (outer 1) outer-names)
+  "Clauses are condition, value, condition, value, ... as Maxima keeps them. outer: the weight of them all."
   (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
     (if (null value) ($refuse '$if_without_else))
     (if (eql weight 1)
-        value
-        (let ((names (cdr ($listofvars (first clauses)))) (other (conditional-with-signs (cddr clauses))))
-          (add (mul weight (restricted value weight names))
-               (mul (sub 1 weight) (restricted other (sub 1 weight) names)))))))
+        (restricted value outer outer-names)
+        (let ((names (append (cdr ($listofvars (first clauses))) outer-names)) (other (sub 1 weight)))
+          (add (mul weight (restricted value (mul outer weight) names))
+               (mul other (conditional-with-signs (cddr clauses) (mul outer other) names)))))))
 
 (defun restricted (e weight names)
   "The expression whose partial functions of what the condition decides have a value where its weight is zero."
