@@ -94,6 +94,20 @@ def test_python_source_keeps_rationals_exact_for_many_digits():
         assert python_function(written)([mpmath.mpf(3)], mpmath) == [1]
 
 
+@pytest.mark.parametrize("operation", ["Subtract", "Divide"])
+def test_python_source_refused_rationals_before_numbers_of_mpmath(operation):
+    written = program(["a"], [("w", [operation, ["Rational", 1, 3], "a"])], {"out": "w"})
+    exact = {"Subtract": mpmath.mpf(1) / 3 - 2, "Divide": mpmath.mpf(1) / 6}[operation]
+    assert python_function(written)([mpmath.mpf(2)], mpmath) == [exact]
+
+
+def test_python_source_took_the_absolute_value_of_a_complex_root():
+    written = program(["a"], [("w", ["Abs", ["Subtract", ["Power", "a", ["Rational", 1, 4]], 2]])], {"out": "w"})
+    assert python_function(written)([81.0]) == [1]
+    with pytest.raises(ValueError, match="domain"):
+        python_function(written)([-81.0])
+
+
 def test_a_singular_pivot_gives_no_finite_number():
     written = program(["a"], [("w", ["Divide", 1, "a"])], {"out": "w"})
     for function in (NumpyFunction(written), compile_c(written), heyoka_function(written)):

@@ -1,7 +1,7 @@
 """A motion program as Python source for floats, symbols and many digits.
 
-The module with the functions (math, sympy, mpmath) is an argument. Rational numbers are written as fractions, which all
-three read exactly.
+The module with the functions (math, sympy, mpmath) is an argument. Rational numbers are exact to the digits of its
+numbers.
 """
 
 from collections.abc import Iterator
@@ -15,8 +15,8 @@ from ..c_source import comment_text, title_of
 from ..motion_program import Constant, Operation, Program
 from ..templates import filled
 
-BUILT_IN = {Operation.ABS: "abs", Operation.SIGN: "sign"}
-FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | BUILT_IN
+DEFINED = {Operation.ABS: "abs", Operation.SIGN: "sign", Operation.POWER: "power"}
+FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | DEFINED
 
 
 def write(program: Program) -> str:
@@ -58,15 +58,13 @@ def _listed(names: tuple[str, ...]) -> str:
 def _number(value: Fraction) -> Formula:
     if value.denominator == 1:
         return infix.signed(str(value.numerator))
-    return infix.atom(f"Fraction({value.numerator}, {value.denominator})")
+    return infix.atom(f"ratio({value.numerator}, {value.denominator})")
 
 
 def _power(base: Formula, exponent: Fraction) -> Formula:
-    return _to_the(base, _number(exponent))
-
-
-def _to_the(base: Formula, exponent: Formula) -> Formula:
-    return Formula(f"{base.within(Rank.ATOM)}**{exponent.within(Rank.SIGNED)}", Rank.POWER)
+    if exponent.denominator != 1:
+        return infix.call("power", base, _number(exponent))
+    return Formula(f"{base.within(Rank.ATOM)}**{_number(exponent).within(Rank.SIGNED)}", Rank.POWER)
 
 
 PYTHON = Arithmetic(
@@ -76,6 +74,5 @@ PYTHON = Arithmetic(
     operations={
         **{operation: partial(infix.call, function) for operation, function in FUNCTIONS.items()},
         **INFIX,
-        Operation.POWER: _to_the,
     },
 )
