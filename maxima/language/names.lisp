@@ -33,6 +33,9 @@
 (defvar *mathjson-constants*
   '(($%pi . "Pi") ($%e . "ExponentialE") ($%i . "ImaginaryUnit") ($%gamma . "EulerGamma") (t . "True") (nil . "False")))
 
+(defvar *names-of-constants*
+  (mapcar #'(lambda (constant) (intern-invert-case (concatenate 'string "$" (cdr constant)))) *mathjson-constants*))
+
 (defun $reads_as_constant (name)
   "Return true if a document that contains the name states a number or a truth value."
-  (and (member (characters-of-name name) (mapcar #'cdr *mathjson-constants*) :test #'string=) t))
+  (and (member name *names-of-constants*) t))

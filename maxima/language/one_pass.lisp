@@ -30,7 +30,7 @@
   (let ((known (make-known-names)) (waiting (list e)))
     (do () ((null waiting) (mlist-of (nreverse (known-names-found known))))
       (let ((part (pop waiting)))
-        (cond ((numberp part))
+        (cond ((or (numberp part) (member part '(t nil))))
               ((or (symbolp part) (and (consp part) (member 'array (car part))))
                (if (not (or (met-before-p part known) ($constantp part))) (note-name part known)))
               ((atom part))
@@ -43,7 +43,7 @@
 (defvar *few-names* 16)
 
 (defun met-before-p (name known)
-  (if (known-names-table known)
+  (if (and (known-names-table known) (symbolp name))
       (gethash name (known-names-table known))
       (member name (known-names-found known) :test #'equal)))
 
@@ -51,7 +51,7 @@
   (push name (known-names-found known))
   (cond ((known-names-table known) (setf (gethash name (known-names-table known)) t))
         ((> (incf (known-names-count known)) *few-names*)
-         (let ((table (setf (known-names-table known) (make-hash-table :test 'equal))))
+         (let ((table (setf (known-names-table known) (make-hash-table))))
            (dolist (each (known-names-found known)) (setf (gethash each table) t))))))
 
 (defun $applications_of (operator e)
@@ -88,13 +88,21 @@
   "x_0 = value for each  x = value."
   (mlist-of (mapcar #'(lambda (item) (list '(mequal simp) ($initial (second item)) (third item))) (cdr items))))
 
-;;; Tables, by which a name is found at once however many there are: of  name = value, and of names.
+;;; Tables, by which a name or number is found at once however many there are: of  name = value, and of names.
+
+(defun table-for (keys)
+  "An empty table. GCL takes ten times as long to compare as lists and texts are compared."
+  (make-hash-table :test (if (all-of-p #'(lambda (key) (or (symbolp key) (integerp key))) keys) 'eql 'equal)))
+
+(defun $new_table () (table-of nil nil))
 
 (defun $table_of_values (items) (table-of (mapcar #'second (cdr items)) (mapcar #'third (cdr items))))
 (defun $table_of_names (names) (table-of (cdr names) (mapcar #'(lambda (name) (declare (ignore name)) t) (cdr names))))
 
 (defun table-of (names values)
-  (let ((table (mfuncall '$make_array '$hashed 1)))
+  "As make_array(hashed, 1) makes it."
+  (let ((table (table-for names)))
+    (setf (gethash 'dim1 table) t)
     (mapc #'(lambda (name value) (setf (gethash name table) value)) names values)
     table))
 
@@ -110,7 +118,7 @@
 (defun $names_outside (table names) (mlist-of (remove-if #'(lambda (name) (gethash name table)) (cdr names))))
 
 (defun $without_repeats (items)
-  (let ((met (make-hash-table :test 'equal :size 16)) (others nil) (distinct nil))
+  (let ((met (table-for (cdr items))) (others nil) (distinct nil))
     (dolist (x (cdr items) (mlist-of (nreverse distinct)))
       (cond ((atom x) (unless (gethash x met) (setf (gethash x met) t) (push x distinct)))
             ((not (member x others :test #'alike1)) (push x others) (push x distinct))))))
@@ -127,7 +135,7 @@
 
 (defun $repeated_items (items)
   "The atoms of a list that stand in it before."
-  (let ((met (make-hash-table :test 'equal :size (+ 16 (length items)))))
+  (let ((met (table-for (cdr items))))
     (mlist-of (remove-if-not #'(lambda (x) (or (gethash x met) (progn (setf (gethash x met) t) nil))) (cdr items)))))
 
 (defun $equationp (e) (and (consp e) (eq (caar e) 'mequal)))
@@ -137,9 +145,24 @@
   (mlist-of (remove-if #'(lambda (item) (and ($equationp item) (gethash (second item) table) ($ratnump (third item))))
                        (cdr items))))
 
-(defun $is_place (x)
-  "Whether it is [x, y], of a drawing."
-  (and ($listp x) (= (length x) 3) (not (any-of-p #'$listp (cdr x)))))
+(defun $shape_drawn (item)
+  "The kind of a shape in a drawing, the coordinates of its places, its radius; false for what is none."
+  (let ((places (shape-places item)))
+    (and places
+         (mlist-of (cons (characters-of-name (caar item))
+                         (append (mapcan #'(lambda (place) (copy-list (cdr place))) places)
+                                 (nthcdr (length places) (cdr item))))))))
+
+(defun shape-places (item)
+  (let* ((kind (and (consp item) (caar item))) (count (and (consp item) (length (cdr item))))
+         (places (case kind
+                   ($point (if (= count 1) (cdr item)))
+                   ($segment (if (= count 2) (cdr item)))
+                   ($polyline (if (> count 1) (cdr item)))
+                   ($circle (if (and (= count 2) (not ($listp (third item)))) (list (second item)))))))
+    (and (all-of-p #'place-p places) places)))
+
+(defun place-p (x) (and ($listp x) (= (length x) 3) (not (any-of-p #'$listp (cdr x)))))
 
 (defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
