@@ -93,3 +93,11 @@ def test_what_cannot_name_a_function_is_refused():
     with pytest.raises(HolonomError) as caught:
         matlab.write_model(model_of_program(written), "my motion")
     assert caught.value.kind is ErrorKind.NOT_AN_IDENTIFIER
+
+
+@pytest.mark.parametrize("name", ["exp", "motion", "end"])
+def test_a_function_named_as_one_that_it_calls_called_itself(name):
+    written = program(["t"], [("w", ["Exp", "t"])], {"w": "w"})
+    with pytest.raises(HolonomError) as caught:
+        matlab.write_model(model_of_program(written), name)
+    assert caught.value.kind is ErrorKind.NAME_TAKEN

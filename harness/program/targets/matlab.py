@@ -1,8 +1,10 @@
 """A scene's model as a MATLAB or Octave function that returns function handles."""
 
+import re
 from collections.abc import Iterable, Iterator
 from textwrap import indent
 
+from ...failures import ErrorKind, HolonomError
 from ...hidden import visible_line
 from ..c_source import ONE, Target, comment_text, title_of
 from ..identifiers import require_identifier
@@ -22,6 +24,10 @@ HELPERS = {
     },
 }
 """Functions that MATLAB lacks, or that have complex values there."""
+KEYWORDS = (
+    "break case catch continue else elseif end for function global if otherwise parfor persistent return spmd switch "
+    "try until while"
+).split()  # of MATLAB and Octave
 REAL_OR_NAN = "y = real_or_nan(y)\nif ~isreal(y), y = NaN; end"
 PIECE = "piece = piece_at(t, pieces)\npiece = pieces(max([1; find(pieces(:, 1) <= t, 1, 'last')]), :);"
 
@@ -43,7 +49,7 @@ def write_model(model: Model, name: str) -> str:
     Raises
     ------
     HolonomError
-        The name cannot name a function.
+        The name cannot name a function, or the functions contain it.
     """
     require_identifier(name)
     functions = list(model_functions(model))
@@ -53,6 +59,9 @@ def write_model(model: Model, name: str) -> str:
     helpers = [text for helper, text in HELPERS.items() if helper in called("\n".join(parts))]
     real = [REAL_OR_NAN] if any("real_or_nan" in each for each in helpers) else []
     pieces = [PIECE] if model.tables else []
+    written = "\n\n\n".join(f"function {each}\nend" for each in [*parts, *pieces, *helpers, *real])
+    if name in {*KEYWORDS, *re.findall(r"[A-Za-z]\w*", written)}:
+        raise HolonomError(ErrorKind.NAME_TAKEN, detail=name)
     return filled(
         "functions.m",
         name=name,
@@ -64,7 +73,7 @@ def write_model(model: Model, name: str) -> str:
         start=given(model, model.state, "NaN"),
         values=given(model, model.parameters, "NaN"),
         handles="\n".join(_handles(functions, model)),
-        functions="\n\n\n".join(f"function {each}\nend" for each in [*parts, *pieces, *helpers, *real]),
+        functions=written,
     )
 
 
