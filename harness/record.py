@@ -113,6 +113,28 @@ class Scene:
         """First and last time."""
         return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
+    def jumping(self, equation: Equation) -> "tuple[Expr, ...]":
+        """Return the functions whose signs jump at the start and change an equation.
+
+        The equation does not hold there.
+
+        Parameters
+        ----------
+        equation : Equation
+            (13) or (18).
+
+        Returns
+        -------
+        tuple of Expr
+            Functions of the initial values that vanish at the start.
+        """
+        if not any(head in repr([each.right_tree for each in equation.relations]) for head in ("'Sign'", "'Abs'")):
+            return ()
+        from .jumps import jumping_at
+
+        start = {f"{name}_0": value for name, value in self.initial_state.items()}
+        return jumping_at(start | dict(self.parameter_values), [each.right for each in equation.relations])
+
 
 @with_attributes
 @dataclass(frozen=True)

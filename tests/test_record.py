@@ -70,6 +70,26 @@ def test_refuses_what_is_no_expression_when_it_is_asked_for(particle_record):
         assert raised.value.kind is ErrorKind.NOT_AN_EXPRESSION
 
 
+@pytest.mark.parametrize(
+    ("force", "x", "speed", "numbers"),
+    [
+        ("1 - signum(dot(x))/2", 0, 0, ["13", "18"]),
+        ("1 - signum(dot(x))/2", 0, 1, []),
+        ("1 - abs(dot(x))*dot(x)", 0, 0, []),  # the jump is in the fourth derivative
+        ("-abs(x)", 0, 1, ["18"]),
+        ("-max(abs(x) - 1, 0)", 0, 1, []),
+        ("-max(abs(x) - 1, 0)", 1, 1, ["18"]),
+    ],
+)
+def test_series_were_shown_for_starts_at_which_a_sign_jumps(force, x, speed, numbers, write_scene):
+    file = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+push : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {speed}])$
+""")
+    (scene,) = read_record(ask(Document.RECORD, file)).scenes
+    assert [equation.number for equation in scene.equations if scene.jumping(equation)] == numbers
+
+
 def test_the_record_of_a_chain_grew_with_the_square_of_its_length():
     lengths = [len(ask(Document.RECORD, CHAIN, settings={"N": str(links)})) for links in (16, 32)]
     assert lengths[1] < 2.2 * lengths[0]

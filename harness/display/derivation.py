@@ -48,6 +48,11 @@ def show_record(console: Console, record: "Record") -> None:
         console.print(f"\n{heading(scene.name, scene.title)}", style="bold")
         _show_equations(console, scene.equations)
         _show_left_out(console, scene.left_out)
+        for equation in scene.equations:
+            if functions := scene.jumping(equation):
+                where = ", ".join(f"{visible_line(str(function))} = 0" for function in functions)
+                line = f"({equation.number}) does not hold at this start, where a sign jumps: {where}."
+                console.print(line, style="yellow", soft_wrap=True)
 
 
 def show_reports(console: Console, reports: Iterable[tuple[str, "CheckReport"]]) -> None:
