@@ -114,7 +114,7 @@ class Scene:
         return None if self.span_trees is None else (expression(self.span_trees[0]), expression(self.span_trees[1]))
 
     def jumping(self, equation: Equation) -> "tuple[Expr, ...]":
-        """Return the functions whose signs jump at the start and change an equation.
+        """Return functions whose signs jump initially and change an equation.
 
         The equation does not hold there.
 
@@ -126,7 +126,7 @@ class Scene:
         Returns
         -------
         tuple of Expr
-            Functions of the initial values that vanish at the start.
+            Functions of the initial values that vanish then.
         """
         if not any(head in repr([each.right_tree for each in equation.relations]) for head in ("'Sign'", "'Abs'")):
             return ()
