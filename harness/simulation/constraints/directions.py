@@ -38,10 +38,10 @@ class WeightedConstraints:
 
         Returns
         -------
-        ndarray, shape (min(n, g),)
+        ndarray, shape (min(n, g),) or (k, min(n, g))
             The largest first.
         """
-        return np.linalg.svd(self.directions, compute_uv=False) if self.directions.size else np.empty(0)
+        return np.linalg.svd(self.directions, compute_uv=False)
 
 
 def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:

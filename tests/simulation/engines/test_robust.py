@@ -258,3 +258,13 @@ def test_the_last_coefficients_alone_are_the_error_of_a_collocation():
     for k, coefficients in enumerate(np.eye(NODES + 2)):
         found = Collocation(0.0, 1.0, 2 * coefficients[:, None], np.zeros((NODES + 1, 1)))
         assert found.error(np.array([0.5])) == (4 if k >= NODES + 2 - TAIL else 0)
+
+
+def test_accelerations_without_constraints_were_never_computed():
+    scene = holonom.system("""system : holonomic_system(coordinates = [x, y], kinetic_energy = (3*dot(x)^2 + 2*dot(y)^2)/2,
+      potential_energy = 3*y)$
+      fall : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1, y = 0, dot(y) = 0], time_span = [0, 2],
+        observe = [trajectory, a = [ddot(x), ddot(y)]])$""")
+    motion = scene.simulate(samples=5, engine="robust")
+    assert motion["a[1]"] == pytest.approx(np.zeros(5))
+    assert motion["a[2]"] == pytest.approx(np.full(5, -1.5))
