@@ -261,7 +261,8 @@ def test_the_last_coefficients_alone_are_the_error_of_a_collocation():
 
 
 def test_accelerations_without_constraints_were_never_computed():
-    scene = holonom.system("""system : holonomic_system(coordinates = [x, y], kinetic_energy = (3*dot(x)^2 + 2*dot(y)^2)/2,
+    scene = holonom.system("""system : holonomic_system(
+      coordinates = [x, y], kinetic_energy = (3*dot(x)^2 + 2*dot(y)^2)/2,
       potential_energy = 3*y)$
       fall : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1, y = 0, dot(y) = 0], time_span = [0, 2],
         observe = [trajectory, a = [ddot(x), ddot(y)]])$""")
