@@ -43,7 +43,9 @@ if TYPE_CHECKING:
 
     from .real_solutions import RealSolutions
 
-SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' nominal sizes
+SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' sizes
+DISTANCES = 4.0 ** np.arange(12)  # in terms of nominal sizes, at which changes of the stiffness are looked for
+CHANGED = 0.1  # relative change of the stiffness at the size of a coordinate
 ITERATIONS = 60
 CONVERGED = 1e-11  # step of Newton's method in terms of the sizes
 BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was met
@@ -204,12 +206,14 @@ def find_equilibria(
     values = _constant_controls(problem, equations, controls)
     search = _Search(problem, equations, list(values.values()))
     same = search.equivalence(np.random.default_rng(seed))
-    points = search.starts(starts, np.random.default_rng(seed), near)
+    rational = _rational(problem, equations, controls)
+    solutions = _all_solutions(problem, equations, values | rational)
+    given = [[each.coordinates[name] for name in equations.coordinates] for each in near]
+    given += [] if solutions is None else solutions.approximate(equations.coordinates)
+    points = search.starts(starts, np.random.default_rng(seed), given)
     found, *left_out = search.equilibria(points, same)
     turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
     names = turns, tuple(reversals)
-    rational = _rational(problem, equations, controls)
-    solutions = _all_solutions(problem, equations, values | rational)
     first = problem.scene, values, {u: str(x) for u, x in rational.items()}, starts
     if solutions is None:
         return Equilibria(*first, found, *left_out, *names, None, False)
@@ -252,15 +256,37 @@ def _constant_controls(
 
 
 class _Search:
-    """Newton's method for r = 0, f = 0, in units of nominal sizes."""
+    """Newton's method for r = 0, f = 0, in units of the coordinates' sizes."""
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
         self._problem, self._equations, self._independent = problem, equations, list(problem.independent)
         self._n = len(equations.coordinates)
         self._t, state = start_of(problem)
         self._first = state[: self._n]
-        self._sizes = nominal_of(problem).coordinates
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
+        self._sizes = self._distances(nominal_of(problem).coordinates)
+
+    def _distances(self, nominal: Vector) -> Vector:
+        """Return a distance for each coordinate at which the stiffness changes.
+
+        It is counted from the initial state, and is the nominal size at least, which is small if the motion is slow or
+        short. A linear system has no other.
+        """
+        steps = np.array([sign * distance * np.diag(nominal) for sign in (1, -1) for distance in DISTANCES])
+        states = self._first[:, None] + np.moveaxis(steps, 1, 0).reshape(self._n, -1)
+        changed = np.zeros(states.shape[1], dtype=bool)
+        with np.errstate(all="ignore"):
+            here, there = (
+                self._at(q, np.zeros((len(self._equations.multipliers), q.shape[1])))
+                for q in (self._first[:, None], states)
+            )
+            for name in ("equation_by_q", "constraint_by_q"):
+                one, other, apart = (
+                    np.linalg.norm(each, axis=(0, 1)) for each in (here[name], there[name], there[name] - here[name])
+                )
+                changed |= apart > CHANGED * np.maximum(one, other)
+        first = np.argmax(np.any(changed.reshape(2, len(DISTANCES), self._n), axis=0), axis=0)
+        return nominal * DISTANCES[first]
 
     @cached_property
     def _start(self) -> Mapping[str, Matrix]:
@@ -319,14 +345,13 @@ class _Search:
             )
         ]
 
-    def starts(self, count: int, random: np.random.Generator, near: Iterable[Equilibrium]) -> Matrix:
+    def starts(self, count: int, random: np.random.Generator, given: Sequence[Sequence[float]]) -> Matrix:
         """Return starting points, shape (n, k).
 
         They are the scene's own, random ones around it and around zero, and the given ones.
         """
         spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
         around = np.outer(self._first, np.arange(count - 1) % 2)
-        given = [list(each.coordinates.values()) for each in near]
         return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1)), *given])
 
     def equilibria(self, starts: Matrix, same: Equivalence) -> tuple[tuple[Equilibrium, ...], int, int]:

@@ -14,6 +14,8 @@ rational is the decimal number that is written. From a Groebner basis over the r
   Varieties, and Algorithms, section 4.1, theorem 1), and those with one more row vanish if they are in that of f.
 - The values of an unknown are roots of the characteristic polynomial of the multiplication by it (section 2.4, theorem
   4.5 of the same book). The numeric solution chooses one of them.
+- The values of the monomials b at a solution are an eigenvector of the multiplication by any polynomial (section 2.4,
+  the same). With rounding errors, they are starting points.
 """
 
 import math
@@ -25,6 +27,7 @@ from itertools import chain, combinations, pairwise, product
 from math import comb, prod
 from typing import Any
 
+import numpy as np
 import sympy
 from sympy.polys.domains import QQ
 from sympy.polys.groebnertools import groebner
@@ -42,6 +45,7 @@ SOLUTIONS = 64  # larger products of the degrees, Bezout's bound of the number o
 EXACT = 16  # with more complex solutions, values stay numeric
 NEAR = 1e-9  # relative distance of a numeric value from the exact one
 UNDEFINED = object()  # the value of an expression that is not a polynomial
+MIXED = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)  # an unknown each: the sum distinguishes most solutions
 ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
 
 
@@ -62,6 +66,43 @@ class RealSolutions:
     regular: bool
     _basis: Sequence[PolyElement] = field(repr=False)
     _standard: Sequence[tuple[int, ...]] = field(repr=False)
+
+    def approximate(self, coordinates: Sequence[str]) -> list[list[float]]:
+        """Return numbers near the real solutions, and perhaps others.
+
+        Multiple solutions have large errors.
+
+        Parameters
+        ----------
+        coordinates : sequence of str
+            Names of the coordinates.
+
+        Returns
+        -------
+        list of list of float
+            Values of the coordinates.
+        """
+        ring = self._basis[0].ring
+        if not self._standard:
+            return []
+        mixed = sum((unknown * prime for unknown, prime in zip(ring.gens, MIXED, strict=False)), ring.zero)
+        columns = np.linalg.eig(self._multiplication(mixed))[1].T
+        unknowns = np.array([[float(c) for c in self._coefficients(x)] for x in ring.gens])
+        one = np.array([float(c) for c in self._coefficients(ring.one)])
+        with np.errstate(all="ignore"):
+            values = [unknowns @ each / (one @ each) for each in columns]
+        names = list(map(str, ring.symbols))
+        real = [dict(zip(names, each.real, strict=True)) for each in values if np.isfinite(each).all()]
+        return [[_angle_or_value(name, each) for name in coordinates] for each in real]
+
+    def _coefficients(self, polynomial: PolyElement) -> list[Any]:
+        """Return coefficients of the standard monomials in a polynomial's remainder."""
+        left = polynomial.rem(self._basis)
+        return [left.get(m, QQ.zero) for m in self._standard]
+
+    def _multiplication(self, polynomial: PolyElement) -> np.ndarray:
+        monomials = [polynomial.ring({m: QQ.one}) for m in self._standard]
+        return np.array([[float(c) for c in self._coefficients(polynomial * each)] for each in monomials])
 
     def exact(self, values: Mapping[str, float]) -> dict[str, sympy.Expr]:
         """Return the exact values of a solution, as far as they are known.
@@ -95,11 +136,16 @@ class RealSolutions:
         return {str(name): self._values(unknown) for name, unknown in zip(ring.symbols, ring.gens, strict=True)}
 
     def _values(self, unknown: PolyElement) -> list[sympy.Expr]:
-        images = [(unknown * unknown.ring({m: QQ.one})).rem(self._basis) for m in self._standard]
-        rows = [[each.get(m, QQ.zero) for m in self._standard] for each in images]
+        rows = [self._coefficients(unknown * unknown.ring({m: QQ.one})) for m in self._standard]
         coefficients = DomainMatrix(rows, (len(rows), len(rows)), QQ).charpoly()
         _, factors = sympy.Poly(coefficients, sympy.Dummy(), domain=QQ).factor_list()
         return [root for each, _ in factors for root in _real_roots(each)]
+
+
+def _angle_or_value(name: str, values: Mapping[str, float]) -> float:
+    if name in values:
+        return float(values[name])
+    return math.atan2(values.get(f"sin({name})", 0.0), values.get(f"cos({name})", 1.0))
 
 
 def _nearest(roots: Sequence[sympy.Expr], value: float) -> sympy.Expr | None:

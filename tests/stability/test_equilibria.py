@@ -201,9 +201,38 @@ def test_count_of_random_potentials_is_that_of_sturm(seed):
     assert found.complete is (len(found) == found.count)
 
 
-def test_one_start_does_not_find_all():
-    found = holonom.system(LINE.format("x^4/4 - x^2/2")).equilibria(starts=1)
-    assert (found.count, found.complete) == (3, False)
+@pytest.mark.parametrize(
+    ("names", "potential", "constraint", "count"),
+    [
+        ("x", "x^4/4 - x^2/2", "", 3),
+        ("x", "cos(x) + x/10", "", 2),
+        ("xyz", "x*y*z", "x^2 + y^2 + z^2 - 3", 14),
+        ("xy", "x^3 - x*y + y^2", "x^2 + 2*y^2 - x - 5", 4),
+    ],
+)
+def test_one_start_finds_all_solutions_of_polynomials(names, potential, constraint, count):
+    """Truth of the last: a resultant of sixth degree, whose roots Sturm's theorem counts."""
+    coordinates, kinetic = ", ".join(names), "+".join(f"dot({name})^2" for name in names)
+    found = holonom.system(f"""system : holonomic_system(coordinates = [{coordinates}], kinetic_energy = ({kinetic})/2,
+  potential_energy = {potential}, constraints = [{constraint}])$
+s : holonomic_scene(system, initial_guess = [{", ".join(f"{x} = 1, dot({x}) = 0" for x in names)}])$""").equilibria(
+        starts=1
+    )
+    assert (found.count, len(found), found.complete) == (count, count, True)
+
+
+@pytest.mark.parametrize(
+    ("potential", "count"),
+    [
+        ("sqrt(1 + (x^2 - 1)^2)", 3),  # at -1, 0 and 1
+        ("exp(cos(x)) + cos(2*x)/2", 4),  # in a turn: sin(x) = 0, and exp(cos(x)) = -2 cos(x)
+        ("log(1 + x^4) - x^2/2", 5),
+    ],
+)
+def test_nothing_far_from_a_short_motion_was_found(potential, count):
+    """The motion goes a millionth of the way between equilibria."""
+    text = LINE.format(potential).replace("x = 1/2", "x = 1/1000").replace("[0, 1]", "[0, 1/100]")
+    assert len(holonom.system(text).equilibria()) == count
 
 
 @pytest.mark.parametrize("potential", ["exp(x) - x", "x^4/4 + sin(x)", "0*x"])
@@ -342,7 +371,7 @@ def test_what_vanishes_twice_was_called_stable_or_found_70_times(details, places
     ("potential", "expected"),
     [
         ("x^3/3 - x/10^8", [(-1e-4, Stability.UNSTABLE), (1e-4, Stability.STABLE)]),
-        ("(x^2 - 10^(-12))^2", [(-1e-6, Stability.STABLE), (1e-6, Stability.STABLE)]),
+        ("(x^2 - 10^(-12))^2", [(-1e-6, Stability.STABLE), (0.0, Stability.UNSTABLE), (1e-6, Stability.STABLE)]),
     ],
 )
 def test_equilibria_next_to_each_other_are_decided(potential, expected):

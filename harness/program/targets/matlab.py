@@ -24,10 +24,11 @@ HELPERS = {
     },
 }
 """Functions that MATLAB lacks, or that have complex values there."""
-KEYWORDS = (
+KEYWORDS = re.findall(
+    r"\w+",
     "break case catch continue else elseif end for function global if otherwise parfor persistent return spmd switch "
-    "try until while"
-).split()  # of MATLAB and Octave
+    "try until while",
+)  # of MATLAB and Octave
 REAL_OR_NAN = "y = real_or_nan(y)\nif ~isreal(y), y = NaN; end"
 PIECE = "piece = piece_at(t, pieces)\npiece = pieces(max([1; find(pieces(:, 1) <= t, 1, 'last')]), :);"
 
