@@ -109,7 +109,7 @@ class HybridMotion:
         self._zero = self._impulse = self._precision.number("0")
         self.switchings: list[Switching] = []
         self.intervals: list[ModeInterval] = []
-        self.undetermined: dict[str, None] = {}  # multipliers and outputs that contacts share in several ways
+        self.undetermined: dict[str, None] = {}  # multipliers, controls and outputs that friction leaves open
         problem = with_nominal(problem, self._span)
         self.nominal = nominal_of(problem)
         self._begin(problem)
@@ -124,6 +124,7 @@ class HybridMotion:
         self._known: dict[Hashable, MotionProblem] = problem.once("modes", problem.matrices, dict)
         self._functions: dict[Hashable, Any] = problem.once(("switching", precision.name), problem.matrices, dict)
         self._inputs = Inputs(problem, precision)
+        self._left_open: tuple[str, ...] = ()  # outputs that depend on a sign that the accelerations do not
         self._left: dict[str, Any] = {}  # signs whose switching surfaces the motion has left, with the times
         self._conditions: dict[Mode, Events] = {}
         start, *state = (precision.number(problem.start[name]) for name in ("t", *problem.state))
@@ -245,6 +246,7 @@ class HybridMotion:
         for step in self._steps(stop):
             crossing = mode.switching_functions.first_crossing(step, self._left)
             if crossing is None:
+                self._look_at_rest(step)
                 yield step
             else:
                 if crossing.t > step.start:
@@ -255,8 +257,18 @@ class HybridMotion:
             time_point = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
             t, state = self.time, self.state.copy()
-            pattern = self._decided({**mode.pattern, **changes}, sticking(mode.pattern), t, state)
+            pattern = {**mode.pattern, **changes}
+            zeros = self._zeros_at({*sticking(mode.pattern)}, pattern, t, state)
+            pattern = self._decided(pattern, zeros, t, state)
             self._switch(pattern, list(changes), t, state, ())
+
+    def _look_at_rest(self, step: Step) -> None:
+        """Note outputs that a sign left open, if its function remains zero until the middle of a step."""
+        if self._left_open:
+            t = step.start + (step.end - step.start) / 2
+            if self._zeros_at(set(), step.mode.pattern, t, step.states(np.array([t]))[:, 0]):
+                self.undetermined |= dict.fromkeys(self._left_open)
+            self._left_open = ()
 
     def _steps(self, stop: Any) -> Iterator[Step]:
         """Yield steps of the mode, the last one to a branch point.
@@ -401,9 +413,9 @@ class HybridMotion:
 
     def _zeros_at(self, known: Set[str], pattern: Pattern, t: Any, state: Numbers) -> list[str]:
         """Return the signs that are zero, and that the accelerations decide about."""
-        if known.issuperset(self._signs):
-            return list(self._signs)
         functions = self.mode.switching_functions
+        if known.issuperset(functions.names):
+            return [name for name in self._signs if name in known]
         small = self._near_zero(functions.values, ZERO, t, state)
         zeros = {name for name, is_small in zip(functions.names, small, strict=True) if is_small} & self._signs.keys()
         return [
@@ -419,26 +431,32 @@ class HybridMotion:
         """
         if not zeros and not self.problem.reacting:
             return pattern
-        decided = self._only(self._modes_at(pattern, zeros), zeros, t, state)
+        decided = self._only(self._modes_at(pattern, zeros), zeros, t, state, pattern)
         lasting = self._lasting_modes(decided)
         if lasting and not (lasting.guards(self._inputs(np.array([t]), state[:, None])) > 0).all():
             self._reject(t, NOT_UNIQUE)
         if lasting and set(sticking(decided)) < set(zeros):
-            self._only(lasting, sticking(decided), t, state)
+            self._only(lasting, sticking(decided), t, state, decided)
         return decided
 
     def _lasting_modes(self, pattern: Pattern) -> FrictionModes | None:
         what = modes_that_may_agree, frozenset(pattern.items())
         return self._once(what, lambda: modes_that_may_agree(self.problem, pattern, self._precision))
 
-    def _only(self, modes: FrictionModes, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
-        """Return the pattern of the one solution at a state."""
+    def _only(self, modes: FrictionModes, zeros: Sequence[str], t: Any, state: Numbers, pattern: Pattern) -> Pattern:
+        """Return the pattern of the one solution at a state.
+
+        It is the given one if no acceleration decides, as of a coordinate that a control holds at rest.
+        """
         found = modes.agreeing(self._inputs(t, state))
         if not found and modes.rough:
             names = self._of(modes.rough)
             self._reject(t, translatable("%(sign)s slides under several forces that contain multipliers", sign=names))
         if found and all(found[0].is_shared_as(each) for each in found):
-            return min((each.pattern for each in found), key=lambda pattern: self._with_roots(pattern) is not None)
+            if len(found) > 1:
+                self._left_open = differing_outputs(self.problem, found, self._precision, t, state)
+            patterns = [each.pattern for each in found]
+            return min(patterns, key=lambda each: (self._with_roots(each) is not None, each != pattern))
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
         shared = modes.shared(found, self._inputs(t, state)) if one else None
         if shared:

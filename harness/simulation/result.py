@@ -77,8 +77,9 @@ class Report:
     controls: Mapping[str, Number] = entry("Empty where the scene does not observe them.", dict)
     outputs: Mapping[str, Number] = entry("Observed quantities with names of their own.", dict)
     undetermined: tuple[str, ...] = entry(
-        "Outputs that are not unique because constraints are redundant, or because contacts stuck together, which may "
-        "share their friction in several ways; multipliers in the latter case, too.",
+        "Outputs that are not unique because constraints are redundant, because contacts stuck together, which may "
+        "share their friction in several ways, or because a path holds at rest what friction may hold, too. "
+        "Multipliers and controls in the latter cases, too.",
         (),
     )
     joints: Mapping[str, str] = entry(

@@ -65,7 +65,7 @@ def undetermined_outputs(
 def differing_outputs(
     problem: MotionProblem, modes: Sequence[Solution], precision: Precision, t: Any, state: Numbers
 ) -> tuple[str, ...]:
-    """Return the multipliers and outputs that depend on the mode of friction.
+    """Return the multipliers, controls and outputs that depend on the mode of friction.
 
     Parameters
     ----------
@@ -93,14 +93,15 @@ def differing_outputs(
 def _outputs_in(
     problem: MotionProblem, mode: Solution, precision: Precision, t: Any, state: Numbers
 ) -> dict[str, float]:
-    """Return the multipliers and outputs in one mode."""
+    """Return the multipliers, controls and outputs in one mode."""
     inputs, motion = Inputs(problem, precision), program_in(problem, problem.motion, mode.pattern)
     solved = dict(zip(motion.outputs, evaluation(motion, precision)(inputs(t, state)), strict=True))
-    multipliers = {name: solved.get(name, 0.0) for name in problem.multipliers}
-    if problem.outputs is None:
-        return multipliers
+    found = {name: solved.get(name, 0.0) for name in problem.multipliers}
+    multipliers = np.array(list(found.values()))
     accelerations = np.array([solved[name] for name in problem.accelerations])
-    outputs = program_in(problem, problem.outputs, mode.pattern)
-    given = inputs(t, state, np.array(list(multipliers.values())), accelerations=accelerations)
-    found = as_floats(evaluation(outputs, precision)(given))
-    return multipliers | dict(zip(outputs.outputs, found, strict=True))
+    given = inputs(t, state), inputs(t, state, multipliers, accelerations=accelerations)
+    for program, numbers in zip((problem.controls, problem.outputs), given, strict=True):
+        if program is not None:
+            values = evaluation(program_in(problem, program, mode.pattern), precision)(numbers)
+            found |= dict(zip(program.outputs, as_floats(values), strict=True))
+    return found

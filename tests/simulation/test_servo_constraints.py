@@ -619,3 +619,25 @@ def test_forces_of_a_crane_are_the_same_in_other_units(units):
         return np.array([motion["F"] / force, motion["W"] / force, motion["x"] / float(length), motion["phi"]])
 
     assert moved(*units) == pytest.approx(moved(1, 1, 1), rel=1e-10, abs=1e-10)
+
+
+WAITING = """system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2,
+  forces = [F - signum(dot(x))])$
+waiting : holonomic_scene(system, servo_constraints = [x = %s], initial_state = [], time_span = [0, 2])$"""
+
+
+@pytest.mark.parametrize(("to", "force"), [(-1, -7), (1, 7)])
+def test_a_path_that_waits_and_goes_backwards_changed_the_sign_of_friction_again_and_again(to, force):
+    scene = holonom.system(WAITING % f"{to}*max(0, t - 1)^3")
+    report = scene.simulate(samples=3).report
+    assert report.controls["F"] == pytest.approx(force)
+    assert report.undetermined == ("F",)  # any force up to that of friction lets the mass wait
+
+
+@pytest.mark.parametrize("path", ["-t^3", "t^3", "t^2"])
+def test_a_path_that_starts_at_rest_leaves_no_force_open(path):
+    assert holonom.system(WAITING % path).simulate(samples=3).report.undetermined == ()
+
+
+def test_a_path_that_comes_to_rest_leaves_the_force_open():
+    assert holonom.system(WAITING % "-max(0, 1 - t)^3").simulate(samples=3).report.undetermined == ("F",)
