@@ -29,6 +29,7 @@ from ..program.motion_problem import MotionProblem, Sign
 from ..program.motion_program import Program
 from ..program.precision import read_precision
 from ..program.sign_pattern import problem_in, switching_function
+from .branch_points import DOUBLINGS
 from .engines.code import codes_for, worthwhile_code
 from .engines.engine import Step
 from .engines.taylor import states_of
@@ -66,8 +67,8 @@ class _Polynomials:
     heyoka's continuous output compiles a function at each call, which takes as long as a hundred steps.
     """
 
-    def __init__(self, first: int) -> None:
-        self._first = first  # row that is recorded first
+    def __init__(self, first: int, start: float) -> None:
+        self._first, self._start = first, start  # row that is recorded first, and time of the first step
         self._steps: list[tuple[float, float, Numbers]] = []
 
     def __call__(self, integrator: Any) -> bool:
@@ -79,9 +80,9 @@ class _Polynomials:
 
     @property
     def last(self) -> float:
-        """The end of the last step with finite numbers, zero without any."""
+        """The end of the last step with finite numbers, the start without any."""
         finite = (end for end, _, rows in reversed(self._steps) if np.isfinite(rows).all())
-        return next(finite, 0.0)
+        return next(finite, self._start)
 
     def at(self, times: Numbers) -> Numbers:
         """Return the recorded rows at times, shape (rows, k)."""
@@ -132,21 +133,11 @@ class _ModeVariation:
         `left` is the remaining time of the motion at the start of the part. The state and the projected derivatives
         at its end are returned with it.
         """
-        integrator, (unit, sizes), half = self._integrator, self.variation.units, (start + end) / 2
+        (unit, sizes), half = self.variation.units, (start + end) / 2
         scaled, rows = state / sizes, sizes[:, None]
         units = self.variation.columns(scaled, moves / rows)
-        integrator.time = start / unit
-        integrator.state[:] = np.concatenate([scaled, (moves / rows / units).ravel()])
-        integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]
-        steps = _Polynomials(len(state))
-        integrator.propagate_until(end / unit, write_tc=True, callback=steps)
-        if integrator.time != end / unit or not np.isfinite(integrator.state).all():
-            raise no_sensitivity(
-                translatable(
-                    "their integration gives no finite numbers beyond t = %(time)s", time=f"{steps.last * unit:.6g}"
-                )
-            )
-        reached, grown = np.split(integrator.state.copy(), [len(state)])
+        steps = self._propagated(start, scaled, moves / rows / units, end, units)
+        reached, grown = np.split(self._integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
         if len(steps) > 1 and start < half < end and np.max(np.abs(grown)) > largest(scaled, reached):
             first, *there = self.integrate(start, state, moves, half, left)
@@ -168,6 +159,30 @@ class _ModeVariation:
                 )
             )
         return [_Segment(start, end, self, derivatives)], there[0], self.variation.corrected(end, *there)
+
+    def _propagated(self, start: float, state: Numbers, moves: Numbers, end: float, units: Numbers) -> _Polynomials:
+        """Integrate numbers in their units, from the first time at which they have a Taylor polynomial.
+
+        A contact with the force of Hertz has none where it begins.
+        """
+        integrator, unit, n = self._integrator, self.variation.units.time, len(state) // 2
+        integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]
+        shortest = np.finfo(float).eps * max(abs(start), nominal_of(self.problem).time) / unit
+        for late in (0.0, *(shortest * 2**k for k in range(DOUBLINGS))):
+            steps = _Polynomials(len(state), start / unit)
+            integrator.time = start / unit
+            integrator.state[:] = np.concatenate([state[:n] + late * state[n:], state[n:], moves.ravel()])
+            outcome, *_ = integrator.propagate_until(end / unit, write_tc=True, callback=steps)
+            finite = np.isfinite(integrator.state).all()
+            if outcome == import_heyoka().taylor_outcome.time_limit and finite:
+                return steps
+            if steps.last > start / unit:
+                break
+        raise no_sensitivity(
+            translatable(
+                "their integration gives no finite numbers beyond t = %(time)s", time=f"{steps.last * unit:.6g}"
+            )
+        )
 
     def rates(self, t: float, state: Numbers) -> Numbers:
         """Return the time derivative of the state, shape (2n,)."""

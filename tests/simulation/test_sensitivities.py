@@ -6,7 +6,7 @@ from math import cosh, sinh, sqrt
 import numpy as np
 import pytest
 import sympy as sp
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 from scipy.special import beta
 
 import holonom
@@ -532,3 +532,23 @@ def test_derivatives_that_depend_on_the_side_were_those_of_one_side(force, by, k
     with pytest.raises(HolonomError) as error:
         scene.simulate(sensitivities=[by])
     assert error.value.kind is ErrorKind.NO_SENSITIVITY
+
+
+@pytest.mark.parametrize("start", [0, 0.1])
+@pytest.mark.parametrize("edge", [0, 0.01])
+def test_a_contact_of_hertz_had_no_derivatives_where_it_begins(start, edge):
+    """By SciPy; the Taylor polynomial of x^(3/2) has no finite coefficients at the edge."""
+    scene = holonom.system(f"""system : holonomic_system(coordinates = [x], parameters = [k],
+      kinetic_energy = dot(x)^2/2, forces = [-k*x + 30*max(0, {edge} - x)^(3/2)])$
+      falling : holonomic_scene(system, parameter_values = [k = 3], initial_state = [x = 1/7, dot(x) = -3/7],
+        time_span = [{start}, 1])$""")
+
+    def end(k):
+        def rates(_, y):
+            return [y[1], -k * y[0] + 30 * max(0, edge - y[0]) ** 1.5]
+
+        return solve_ivp(rates, (start, 1), [1 / 7, -3 / 7], rtol=1e-11, atol=1e-13, max_step=1e-2).y[:, -1]
+
+    motion = scene.simulate(samples=2, sensitivities=["k"])
+    expected = (end(3.001) - end(2.999)) / 0.002
+    assert [motion["d(x, k)"][-1], motion["d(dot(x), k)"][-1]] == pytest.approx(expected, rel=1e-5)
