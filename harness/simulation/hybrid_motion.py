@@ -263,7 +263,7 @@ class HybridMotion:
             self._switch(pattern, list(changes), t, state, ())
 
     def _look_at_rest(self, step: Step) -> None:
-        """Note outputs that a sign left open, if its function remains zero until the middle of a step."""
+        """Note outputs that a sign left open if its function remains zero."""
         if self._left_open:
             t = step.start + (step.end - step.start) / 2
             if self._zeros_at(set(), step.mode.pattern, t, step.states(np.array([t]))[:, 0]):

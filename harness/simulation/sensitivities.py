@@ -161,9 +161,9 @@ class _ModeVariation:
         return [_Segment(start, end, self, derivatives)], there[0], self.variation.corrected(end, *there)
 
     def _propagated(self, start: float, state: Numbers, moves: Numbers, end: float, units: Numbers) -> _Polynomials:
-        """Integrate numbers in their units, from the first time at which they have a Taylor polynomial.
+        """Integrate numbers in their units.
 
-        A contact with the force of Hertz has none where it begins.
+        They begin where they have a Taylor polynomial. A contact with the force of Hertz has none at its edge.
         """
         integrator, unit, n = self._integrator, self.variation.units.time, len(state) // 2
         integrator.pars[:] = self.variation.values(start, units)[: len(integrator.pars)]

@@ -65,7 +65,7 @@ def undetermined_outputs(
 def differing_outputs(
     problem: MotionProblem, modes: Sequence[Solution], precision: Precision, t: Any, state: Numbers
 ) -> tuple[str, ...]:
-    """Return the multipliers, controls and outputs that depend on the mode of friction.
+    """Return the names of quantities that depend on the mode of friction.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def differing_outputs(
 def _outputs_in(
     problem: MotionProblem, mode: Solution, precision: Precision, t: Any, state: Numbers
 ) -> dict[str, float]:
-    """Return the multipliers, controls and outputs in one mode."""
+    """Return multipliers, controls and outputs in one mode."""
     inputs, motion = Inputs(problem, precision), program_in(problem, problem.motion, mode.pattern)
     solved = dict(zip(motion.outputs, evaluation(motion, precision)(inputs(t, state)), strict=True))
     found = {name: solved.get(name, 0.0) for name in problem.multipliers}
