@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .program.motion_problem import MotionProblem, require_analytic, require_laws
+from .program.motion_problem import MotionProblem, require_analytic, require_law_at, require_laws
 from .program.request import Index
 from .stability.linear_equations import LinearEquations, Point
 from .stability.linearization import motion_at, state_at
@@ -189,6 +189,7 @@ class Dae:
 
         The gradients of the equations are included.
         """
+        require_law_at(self.problem, t)
         ends = np.cumsum([self._n, self._n, len(self._independent)])
         parts, rates = (np.split(np.asarray(each, dtype=float), ends) for each in (y, yp))
         multipliers = np.zeros(len(self.equations.multipliers))

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from ..description import Description
 
 Built = TypeVar("Built")
+ROUNDED = 1e-9  # of the time to the end of a law: how far behind it a time counts as its end
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 
 
@@ -402,6 +403,27 @@ def require_laws(problem: MotionProblem) -> None:
     """
     if problem.servo.constraints:
         raise HolonomError(ErrorKind.NO_LAW, problem.scene)
+
+
+def require_law_at(problem: MotionProblem, t: float) -> None:
+    """Reject a time after the end of a law, unless rounding puts it there.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    t : float
+        Time, in the scene's unit.
+
+    Raises
+    ------
+    HolonomError
+        A law has no values there.
+    """
+    if problem.law_end is not None:
+        end, start = float(problem.law_end), float(problem.start["t"])
+        if t - end > ROUNDED * (end - start):
+            raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{end:.10g}")
 
 
 def function_of_knot(knot: Fraction) -> str:

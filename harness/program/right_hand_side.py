@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..failures import ErrorKind, HolonomError
-from .motion_problem import MotionProblem, require_analytic
+from .motion_problem import MotionProblem, require_analytic, require_law_at
 from .numpy_function import NumpyFunction
 from .rewriting import computing
 
@@ -53,4 +53,5 @@ class RightHandSide:
         """Return the velocities and accelerations."""
         state = np.asarray(y, dtype=float)
         times = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
+        require_law_at(self.problem, times.max(initial=self.t0))
         return np.concatenate([state[len(state) // 2 :], self._accelerations([times, *state])])

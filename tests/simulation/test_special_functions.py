@@ -176,6 +176,18 @@ def test_no_motion_goes_on_beyond_the_span_of_a_special_function(pushed_problem:
     assert caught.value.kind is ErrorKind.LAW_ENDS
 
 
+def test_equations_for_other_integrators_went_on_after_the_time_span():
+    scene = holonom.system("""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+      forces = [bessel_j(0, t)])$
+      pushed : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$""")
+    f, dae = scene.rhs(), scene.dae()
+    assert solve_ivp(f, (0, 3), f.y0).success
+    for later in (lambda: f(9, f.y0), lambda: dae.residual(9, dae.y0, dae.yp0)):
+        with pytest.raises(HolonomError) as caught:
+            later()
+        assert caught.value.kind is ErrorKind.LAW_ENDS
+
+
 def test_no_derivatives_of_high_order_are_taken_of_the_polynomials(pushed_problem: MotionProblem):
     with pytest.raises(HolonomError) as caught:
         expand(pushed_problem, 30, read_precision("double"))
