@@ -278,7 +278,8 @@ def christoffel_symbols(checked: CheckedDerivation, relations: Relations) -> Com
     expected = {}
     for s, residual in enumerate(checked.stated.kinetic, 1):
         quadratic = residual.xreplace(at_rest)
-        present = [k for k, velocity in enumerate(v, 1) if velocity in quadratic.free_symbols]
+        symbols = quadratic.free_symbols
+        present = [k for k, velocity in enumerate(v, 1) if velocity in symbols]
         for k, m in combinations_with_replacement(present, 2):
             expected[k, m, s] = quadratic.diff(v[k - 1], v[m - 1]) / 2
     return Comparison(_sparse_pairs("christoffel", derived, expected))

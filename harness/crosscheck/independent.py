@@ -60,8 +60,12 @@ class IndependentEquations:
     def constraint_forces(self) -> tuple[sp.Expr, ...]:
         """The n reactions lambda_beta df_beta/dq_s."""
         system = self.system
-        power = sp.Add(*(multiplier * f for multiplier, f in zip(system.multipliers, system.constraints, strict=True)))
-        return tuple(gradient(power, system.coordinates))
+        terms: dict[sp.Symbol, list[sp.Expr]] = {q: [] for q in system.coordinates}
+        for multiplier, f in zip(system.multipliers, system.constraints, strict=True):
+            present = sorted(f.free_symbols & terms.keys(), key=str)
+            for q, slope in zip(present, gradient(f, present), strict=True):
+                terms[q].append(multiplier * slope)
+        return tuple(sp.Add(*each) for each in terms.values())
 
     @cached_property
     def constraint_derivatives(self) -> tuple[sp.Expr, ...]:

@@ -5,7 +5,7 @@ The working precision is higher than the stated one.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import sympy as sp
 from mpmath import mp
@@ -13,6 +13,7 @@ from mpmath import mp
 from .evaluation import Steps
 from .irregular_point import IrregularPoint
 from .ranks import Row, least_solution
+from .system import gradient
 
 SPARE_DIGITS = 15
 """Of those that are carried, digits to which the last step need not vanish."""
@@ -23,14 +24,17 @@ NEWTON_STEPS = 60
 State = dict[sp.Symbol, mp.mpf]
 
 
+def _sparse_gradient(expression: sp.Expr, places: Mapping[sp.Symbol, int]) -> dict[int, sp.Expr]:
+    present = sorted(expression.free_symbols & places.keys(), key=places.get)
+    return dict(zip(map(places.get, present), gradient(expression, present), strict=True))
+
+
 class Gradients:
     """Derivatives of expressions by some symbols, as sparse rows."""
 
     def __init__(self, expressions: Sequence[sp.Expr], symbols: Sequence[sp.Symbol]) -> None:
-        rows = [
-            {k: expression.diff(x) for k, x in enumerate(symbols) if x in expression.free_symbols}
-            for expression in expressions
-        ]
+        places = {symbol: k for k, symbol in enumerate(symbols)}
+        rows = [_sparse_gradient(each, places) for each in expressions]
         self.symbols = symbols
         self._places = [(i, k) for i, row in enumerate(rows) for k in row]
         self._steps = Steps([entry for row in rows for entry in row.values()])

@@ -193,7 +193,8 @@ def _largest_block(system: MechanicalSystem, supported: bool) -> int:
     if supported:
         return _largest_block_supported(system)
     rows = gradient(system.kinetic_energy, system.velocities)
-    return max(sum(momentum.diff(v) != 0 for v in system.velocities if v in momentum.free_symbols) for momentum in rows)
+    moving = set(system.velocities)
+    return max(sum(momentum.diff(v) != 0 for v in momentum.free_symbols & moving) for momentum in rows)
 
 
 def _largest_block_supported(system: MechanicalSystem) -> int:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 import sympy as sp
@@ -187,7 +187,13 @@ def gradient(expression: sp.Expr, symbols: Sequence[sp.Symbol]) -> list[sp.Expr]
         else:
             for symbol in present:
                 terms[symbol].append(term)
-    return [sp.Add(sp.Add(*terms[symbol]).diff(symbol), *slopes[symbol]) for symbol in symbols]
+    return [sp.Add(_derivative(sp.Add(*terms[symbol]), symbol), *slopes[symbol]) for symbol in symbols]
+
+
+@lru_cache(2**16)
+def _derivative(expression: sp.Expr, symbol: sp.Symbol) -> sp.Expr:
+    """Return a partial derivative. Those of constraints are asked for many times."""
+    return expression.diff(symbol)
 
 
 def history(symbol: sp.Symbol) -> tuple[sp.Symbol, ...]:
