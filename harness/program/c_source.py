@@ -14,12 +14,16 @@ from fractions import Fraction
 from functools import partial
 from math import e, pi
 from textwrap import indent
+from typing import TYPE_CHECKING
 
 from ..expression import infix
 from ..expression.infix import Formula
 from .arithmetic import ELEMENTARY, INFIX, Arithmetic
 from .motion_program import BINARY, Constant, Name, Operation, Program, names_in, names_used
 from .templates import filled, template
+
+if TYPE_CHECKING:
+    from .model import Model
 
 FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs"}
 
@@ -123,6 +127,22 @@ def title_of(program: Program) -> str:
     scene = f" of {program.scene}" if program.scene else ""
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
     return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}"
+
+
+def title_of_model(model: "Model") -> str:
+    """Return a one-line description of a model.
+
+    Parameters
+    ----------
+    model : Model
+
+    Returns
+    -------
+    str
+        That of its motion, and the last time for which tables and special functions have values.
+    """
+    title = title_of(model.motion)
+    return title if model.law_end is None else f"{title}, until t = {float(model.law_end):.10g}"
 
 
 def range_of(program: Program) -> str:

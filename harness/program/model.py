@@ -57,6 +57,9 @@ class Model:
         None,
     )
     outputs: Program | None = entry("Program: what the scene observes under names of its own; null without any.", None)
+    law_end: NumberText | None = entry(
+        "The last time for which tables or special functions give values; null where nothing ends them.", None
+    )
 
     @property
     def histories(self) -> tuple[str, ...]:

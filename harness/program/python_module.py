@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import fill, indent
 
-from .c_source import ONE, Target, comment_text, title_of
+from .c_source import ONE, Target, comment_text, title_of_model
 from .model import Model
 from .model_functions import ModelFunction, body, called, given, has_law, model_functions
 from .templates import filled
@@ -61,7 +61,7 @@ def module_text(model: Model, name: str, package: Package, ending: str = "") -> 
     support = [package.support.rstrip(), CUBE if "cube" in called(text) else "", _tables(model)]
     return filled(
         "functions.py.txt",
-        title=comment_text(f"{name}: {title_of(model.motion)}"),
+        title=comment_text(f"{name}: {title_of_model(model)}"),
         usage=fill(f"{USAGE}{'' if has_law(model) else LAWLESS} {package.usage}", 120),
         imports="\n".join(_imports(model, called(text) - package.own, package)),
         state=_names(model.state),

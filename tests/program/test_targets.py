@@ -1,11 +1,13 @@
 """Languages of motion programs are the modules of a folder."""
 
+import pytest
+from exported import POINTS, lift_by_a_table
 from particle import PARTICLE
 
 from holonom.program import targets
 from holonom.program.forms import MotionProgram
 from holonom.program.request import Request
-from holonom.program.targets import FORMS
+from holonom.program.targets import FORMS, target
 from holonom.program.templates import filled, template
 from holonom.sandbox import Limits
 
@@ -36,3 +38,11 @@ def test_places_of_a_template_are_filled_and_nothing_else():
     assert "@{" in template("library.h")
     assert "@" not in filled("CMakeLists.txt", name="crane")
     assert "${CMAKE_CURRENT_SOURCE_DIR}" in filled("CMakeLists.txt", name="crane")
+
+
+@pytest.mark.parametrize("name", ["c", "matlab", "python_numpy", "python_jax"])
+def test_the_last_time_of_a_table_was_not_in_the_code_that_continues_it(name, tmp_path):
+    model = lift_by_a_table(tmp_path / "lift.mac")
+    assert float(model.law_end) == POINTS[-1][0]
+    written = target(name).write_model(model, "lift")
+    assert f"t = {POINTS[-1][0]:.10g}" in (written if isinstance(written, str) else written["lift.h"])

@@ -22,7 +22,7 @@ from ..c_source import (
     in_pieces,
     names_of,
     statements,
-    title_of,
+    title_of_model,
 )
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
@@ -89,7 +89,7 @@ def explanation(model: Model) -> str:
         f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
     ]
     given = " and ".join(filter(None, inputs)) or "none"
-    return f"{title_of(model.motion)}. Inputs besides t, q and v: {given}. The others have the scene's values."
+    return f"{title_of_model(model)}. Inputs besides t, q and v: {given}. The others have the scene's values."
 
 
 def _enumerations(model: Model, prefix: str) -> Iterator[str]:

@@ -6,7 +6,7 @@ from textwrap import indent
 
 from ...failures import ErrorKind, HolonomError
 from ...hidden import visible_line
-from ..c_source import ONE, Target, comment_text, title_of
+from ..c_source import ONE, Target, comment_text, title_of_model
 from ..identifiers import require_identifier
 from ..model import Model
 from ..model_functions import ModelFunction, body, called, given, has_law, model_functions
@@ -66,7 +66,7 @@ def write_model(model: Model, name: str) -> str:
     return filled(
         "functions.m",
         name=name,
-        title=comment_text(title_of(model.motion)),
+        title=comment_text(title_of_model(model)),
         state=_names(model.state),
         controls=_names(model.histories),
         parameters=_names(model.parameters),
