@@ -11,19 +11,8 @@ REQUIREMENT = re.compile(r"(?P<package>[\w.-]+)[^;]*(?:;.*extra\s*==\s*['\"](?P<
 NO_ROOM = ("failed to map segment", "annot allocate memory")  # message of the loader of libraries
 
 
-def extra_of(package: str) -> str | None:
-    """Return the extra that installs a package.
-
-    Parameters
-    ----------
-    package : str
-        Name of the package, in upper or lower case.
-
-    Returns
-    -------
-    str or None
-        None if no extra installs it.
-    """
+def _extra_of(package: str) -> str | None:
+    """Return the extra that installs a package."""
     return next((extra for name, extra in requirements() if name.lower() == package.lower()), None)
 
 
@@ -77,7 +66,7 @@ def missing_package(package: str) -> HolonomError:
     -------
     HolonomError
     """
-    extra = extra_of(package)
+    extra = _extra_of(package)
     lacking = {extra, *(other for name, other in requirements() if other in USERS_EXTRAS and version_of(name) is None)}
     named = f"holonom[{','.join(sorted(lacking))}]" if extra else package
     return HolonomError(ErrorKind.EXTRA_MISSING, package=package, named=named)
@@ -121,7 +110,7 @@ def naming_the_extra() -> Iterator[None]:
         yield
     except ModuleNotFoundError as error:
         package = str(error.name).partition(".")[0]
-        if extra_of(package) is None:
+        if _extra_of(package) is None:
             raise
         raise missing_package(package) from None
     except ImportError as error:

@@ -71,7 +71,7 @@ def components() -> Iterator[Component]:
         version = None if shutil.which(program) is None else ""
         hint = _install_program(program)
         if program == "maxima" and version is not None:
-            version = maxima_version()
+            version = _maxima_version()
         elif program == "bwrap" and version is not None and (hindrance := _hindrance_of_sandbox()):
             version, hint = None, hindrance
         yield Component(program, version, purpose, program == NEEDED, hint)
@@ -90,14 +90,8 @@ def _hindrance_of_sandbox() -> str:
         return str(error)
 
 
-def maxima_version() -> str | None:
-    """Return the versions of Maxima and its Lisp.
-
-    Returns
-    -------
-    str or None
-        None if Maxima does not run.
-    """
+def _maxima_version() -> str | None:
+    """Return the versions of Maxima and its Lisp."""
     try:
         found = read(Document.VERSIONS, ask(Document.VERSIONS, LIBRARY / "holonom.mac"), MaximaVersions)
     except HolonomError:
@@ -114,7 +108,7 @@ def versions() -> dict[str, str]:
         By name. ``not installed`` for a missing component.
     """
     packages = {name: version_of(name.lower()) for name in ("heyoka", "SymPy")}
-    found = {"holonom": version_of("holonom"), "Maxima": maxima_version(), **packages}
+    found = {"holonom": version_of("holonom"), "Maxima": _maxima_version(), **packages}
     return {name: version or "not installed" for name, version in found.items()}
 
 
@@ -167,24 +161,12 @@ def put_into_maxima(directory: Path) -> Path:
         if (helping / name).exists():
             raise HolonomError(ErrorKind.UNRELATED_IN_MAXIMA, detail=str(helping / name))
     write_files(helping, files)
-    write_whole(stub, stub_text(shared("maxima"), helping))
+    write_whole(stub, _stub_text(shared("maxima"), helping))
     return stub
 
 
-def stub_text(library: Path, helping: Path) -> str:
-    """Return the Maxima file that loads the library and its help.
-
-    Parameters
-    ----------
-    library : Path
-        Folder of the library.
-    helping : Path
-        Folder of the help.
-
-    Returns
-    -------
-    str
-    """
+def _stub_text(library: Path, helping: Path) -> str:
+    """Return the Maxima file that loads the library and its help."""
     return (
         f"{MARK}\n\n"
         f"load({quoted(library / 'holonom.mac')})$\n"

@@ -28,20 +28,12 @@ def doctor(json_file: Path | None) -> int:
 
     found = list(components())
     document = published(Publication.DOCTOR, Installation(tuple(found)))
-    present(document, json_file, show_components, found)
+    present(document, json_file, _show_components, found)
     return MISSING if any(each.needed and each.version is None for each in found) else 0
 
 
-def show_components(console: "Console", components: "Iterable[Component]") -> None:
-    """Print installed and missing components, and the commands that install them.
-
-    Parameters
-    ----------
-    console : Console
-        Console to print on.
-    components : iterable of Component
-        Components, installed or not.
-    """
+def _show_components(console: "Console", components: "Iterable[Component]") -> None:
+    """Print installed and missing components, and the commands that install them."""
     from rich.table import Table
     from rich.text import Text
 

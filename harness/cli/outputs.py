@@ -162,7 +162,7 @@ class Command(click.Command):
                 require_writable(path)
         require_apart(scenes, [path for _, path in outputs])
         for kind, path in () if force else files:
-            require_replaceable(path, kind.json)
+            _require_replaceable(path, kind.json)
         return super().invoke(ctx)
 
 
@@ -201,22 +201,10 @@ def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
         taken.append((output, translatable("another output")))
 
 
-def require_replaceable(path: Path, json: bool) -> None:
+def _require_replaceable(path: Path, json: bool) -> None:
     """Raise if a file may not be replaced.
 
     An empty file may be, and a document of Holonom by another one.
-
-    Parameters
-    ----------
-    path : Path
-        Output file, which may not exist yet.
-    json : bool
-        True if a JSON document will be written.
-
-    Raises
-    ------
-    HolonomError
-        There is a file with something else in it.
     """
     from ..formats import is_document
 

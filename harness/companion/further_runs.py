@@ -52,42 +52,14 @@ def models(file: Path) -> dict[str, Model]:
     return {law: scene_model(file, Request(scene), [*OPEN, *OF_LAW[law]], Limits()) for law, scene in LAWS.items()}
 
 
-def drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
-    """Return the shapes of a system's drawing, and the program of their numbers.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str
-        Name of the scene.
-
-    Returns
-    -------
-    shapes : tuple of str
-        Names of the shapes.
-    program : Program
-        Motion program of the numbers.
-    """
+def _drawing_of(file: Path, scene: str) -> tuple[tuple[str, ...], Program]:
+    """Return the shapes of a system's drawing, and the program of their numbers."""
     drawing = motion_problem(file, Request(scene), Limits()).drawing
     return tuple(map(str, drawing.shapes)), drawing.program
 
 
-def short_study(file: Path, scene: str) -> Study:
-    """Return the study of ``holonom accuracy``, with fewer settings.
-
-    Parameters
-    ----------
-    file : Path
-        Scene file.
-    scene : str
-        Name of the scene.
-
-    Returns
-    -------
-    Study
-        Measurements.
-    """
+def _short_study(file: Path, scene: str) -> Study:
+    """Return the study of ``holonom accuracy``, with fewer settings."""
     return study(file, Request(scene), Limits(), SHORT_PLAN)
 
 
@@ -113,19 +85,8 @@ def drifting(file: Path, scene: str) -> dict[Stabilization, Simulation]:
     }
 
 
-def short_report(name: str) -> CaseReport:
-    """Return the short report on a hard case.
-
-    Parameters
-    ----------
-    name : str
-        Name of the case.
-
-    Returns
-    -------
-    CaseReport
-        Digits of the methods.
-    """
+def _short_report(name: str) -> CaseReport:
+    """Return the short report on a hard case."""
     return examined(next(case for case in REGISTER if case.name == name), Extent.SHORT)
 
 
@@ -135,14 +96,14 @@ def _exhibit(file: str, scene: str | None = None, until: str | None = None, **sh
 
 FURTHER_RUNS: Mapping[str, Mapping[str, Run]] = {
     "gallery": {each["name"]: _exhibit(**each) for each in EXHIBITS},
-    "hard-cases": {case.name: Run(short_report, (case.name,)) for case in REGISTER},
+    "hard-cases": {case.name: Run(_short_report, (case.name,)) for case in REGISTER},
     "radius-of-convergence": {"radii": Run(find_radii)},
     "turn-the-knob": {
         "models": Run(models, (TILTED_PLANE,)),
-        "drawing": Run(drawing_of, (TILTED_PLANE, LAWS["linear"])),
+        "drawing": Run(_drawing_of, (TILTED_PLANE, LAWS["linear"])),
     },
     "work-precision": {
-        "study": Run(short_study, (PAPER, INITIAL_SCENE)),
+        "study": Run(_short_study, (PAPER, INITIAL_SCENE)),
         "drift": Run(drifting, (PENDULUM, SWING)),
     },
 }

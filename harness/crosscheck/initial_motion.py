@@ -206,7 +206,7 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     for name in names:
         if derived[name] != checked.initial_values[name]:
             raise NotComparable(translatable("two values of %(name)s"), name=name)
-    require_given(checked, derived)
+    _require_given(checked, derived)
     pairs = (
         *_vanishing(translatable("constraint"), checked.system.constraints),
         *_vanishing(translatable("derivative of constraint"), checked.derivation.stated.constraint_derivatives),
@@ -214,21 +214,8 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     return at_start(checked, pairs)
 
 
-def require_given(checked: CheckedScene, derived: Definitions) -> None:
-    """Raise unless initial values are the given ones, up to the stated correction.
-
-    Parameters
-    ----------
-    checked : CheckedScene
-        The scene.
-    derived : Definitions
-        Initial values in the record, by the symbols q1_0, dot(q1)_0.
-
-    Raises
-    ------
-    NotComparable
-        The message names the value.
-    """
+def _require_given(checked: CheckedScene, derived: Definitions) -> None:
+    """Raise unless initial values are the given ones, up to the stated correction."""
     changes = {}
     for name, value in checked.given_values.items():
         change = (derived[name] - value).xreplace(checked.parameters)

@@ -148,7 +148,7 @@ class _Numbers:
             flat = [entry.xreplace(inserted).xreplace(inserted) for column in columns for entry in column]
             evaluate = sp.lambdify(named, flat, modules=[{"sign": lambda x: (x > 0) - (x < 0)}, "math"], cse=True)
             height = len(columns[0])
-            return lambda *point: list(batched(evaluate(*point), height))
+            return lambda *point: list(_batched(evaluate(*point), height))
 
         return cls(
             system,
@@ -159,20 +159,8 @@ class _Numbers:
         )
 
 
-def batched(numbers: Sequence[float], size: int) -> Iterator[Vector]:
-    """Cut a sequence into lists of a size.
-
-    Parameters
-    ----------
-    numbers : sequence of float
-        The sequence.
-    size : int
-        Length of each list. The last one may be shorter.
-
-    Returns
-    -------
-    iterator of list of float
-    """
+def _batched(numbers: Sequence[float], size: int) -> Iterator[Vector]:
+    """Cut a sequence into lists of a size."""
     return (list(numbers[k : k + size]) for k in range(0, len(numbers), size))
 
 

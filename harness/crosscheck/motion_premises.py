@@ -110,7 +110,7 @@ def _compared(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Ite
     for found, belongs in zip(problem.time_span or (), motion.span or (), strict=True):
         yield ComparedValue("time span", mp.mpf(found), belongs, abs(belongs))
     own = States(motion, problem, seed)
-    programs = law_programs(motion, problem)
+    programs = _law_programs(motion, problem)
     for place, time in enumerate(law_times(motion, problem, own.span)):
         state = own.state(place) | {"t": (time, mp.one)}
         try:
@@ -125,21 +125,8 @@ def _compared(motion: DescribedMotion, problem: MotionProblem, seed: str) -> Ite
                 yield value._replace(quantity=f"{value.quantity} at t = {mp.nstr(time, 12)}")
 
 
-def law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Program]:
-    """Return the parts of a problem's programs that compute laws, each once.
-
-    Parameters
-    ----------
-    motion : DescribedMotion
-        The description.
-    problem : MotionProblem
-        Maxima's problem.
-
-    Returns
-    -------
-    list of Program
-        Programs whose outputs are controls, their time derivatives and prescribed reactions.
-    """
+def _law_programs(motion: DescribedMotion, problem: MotionProblem) -> list[Program]:
+    """Return the parts of a problem's programs that compute laws, each once."""
     laws = [
         f"{dots}{name}{end}" for name in motion.law.places for dots, end in (("", ""), ("dot(", ")"), ("ddot(", ")"))
     ]

@@ -111,7 +111,7 @@ def verify(comparison: Comparison, seed: str) -> CheckResult:
         return CheckResult(Verdict.NOTHING, None, None)
     numbers = _pairs_of_numbers(comparison) if comparison.rounded else ()
     others = tuple(pair for pair in comparison.pairs if pair not in numbers)
-    found = [verify_rounded(replace(comparison, pairs=numbers))] if numbers else []
+    found = [_verify_rounded(replace(comparison, pairs=numbers))] if numbers else []
     return _weakest([*found, _Verification(replace(comparison, pairs=others), seed).result()] if others else found)
 
 
@@ -354,20 +354,11 @@ def _is_real(coarse: Number, fine: Number) -> bool:
     return _vanishes(mp.im(coarse), mp.im(fine)) or abs(mp.im(fine)) <= mp.mpf(10) ** -SHRUNK * abs(fine)
 
 
-def verify_rounded(comparison: Comparison) -> CheckResult:
+def _verify_rounded(comparison: Comparison) -> CheckResult:
     """Return the verdict on pairs at one point whose numbers may be rounded.
 
     A difference d is explained if a change of the numbers in the 50th digit makes it: |d| <= 10^-50 times the sum of
     |x dd/dx| over the rounded numbers x.
-
-    Parameters
-    ----------
-    comparison : Comparison
-        Comparison without free symbols.
-
-    Returns
-    -------
-    CheckResult
     """
     values = _rounded_values(comparison)
     exact = _resolved({x: meaning for x, meaning in comparison.given.items() if x not in comparison.rounded})

@@ -91,7 +91,7 @@ def figure_style() -> Iterator[None]:
     HolonomError
         Matplotlib is not installed.
     """
-    matplotlib = import_matplotlib()
+    matplotlib = _import_matplotlib()
     with matplotlib.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph .* missing", UserWarning)  # the reader may have the font
         default = {name: value for name, value in matplotlib.rcParamsDefault.items() if name != "backend"}
@@ -132,7 +132,7 @@ def new_figure(width: float, height: float) -> "Figure":
     HolonomError
         Matplotlib is not installed.
     """
-    import_matplotlib()
+    _import_matplotlib()
     from matplotlib.figure import Figure
 
     return Figure(figsize=(width, height), layout="constrained")
@@ -239,7 +239,7 @@ def svg_text(figure: "Figure") -> str:
     """
     buffer = io.StringIO()
     _take_text_for_text(figure)
-    with import_matplotlib().rc_context(WRITING):
+    with _import_matplotlib().rc_context(WRITING):
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "Holonom"})
     head, defs, rest = visible(buffer.getvalue()).partition("<defs>")
     lines = (line.rstrip() for line in (head + COLOUR_OF_INK + defs + rest.replace(INK, "currentColor")).splitlines())
@@ -261,18 +261,8 @@ def _take_text_for_text(figure: "Figure") -> None:
         written.set_text(DOLLAR.sub(r"\\$", visible(written.get_text())))
 
 
-def import_matplotlib() -> ModuleType:
-    """Return Matplotlib.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    HolonomError
-        Matplotlib is not installed, or its settings file is not UTF-8.
-    """
+def _import_matplotlib() -> ModuleType:
+    """Return Matplotlib."""
     try:
         import matplotlib
     except ImportError:

@@ -42,7 +42,7 @@ def sweep_figure(sweep: "Sweep", quantity: str | None = None) -> "Figure":
         Matplotlib is not installed, there is no such quantity, or not one parameter varies, nor two in a grid.
     """
     names = [axis["name"] for axis in sweep.document["parameters"]]
-    shown = quantity or plotted(sweep.document)
+    shown = quantity or _plotted(sweep.document)
     if shown not in sweep.document["columns"] or shown in ("status", "note"):
         raise HolonomError(
             ErrorKind.NOT_PLOTTED, detail=translatable("the sweep does not record %(shown)s", shown=shown)
@@ -84,19 +84,8 @@ def require_plottable(axes: "SweepAxes") -> None:
         )
 
 
-def plotted(document: dict[str, Any]) -> str:
-    """Return the first quantity that a sweep records, or its residual.
-
-    Parameters
-    ----------
-    document : dict
-        JSON document of the sweep.
-
-    Returns
-    -------
-    str
-        Name of a column.
-    """
+def _plotted(document: dict[str, Any]) -> str:
+    """Return the first quantity that a sweep records, or its residual."""
     names = {axis["name"] for axis in document["parameters"]}
     outputs = [name for name in document["columns"] if name not in names and name not in BESIDE]
     return outputs[0] if outputs else "residual"

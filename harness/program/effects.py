@@ -156,28 +156,13 @@ def scene_costs(file: Source | Path, request: Request, limits: Limits) -> Measur
     """
     asked = (Document.EFFECTS, file, request.scene, request.solve)
     text = ask(*asked, settings=request.settings, limits=limits)
-    return measure_costs(read(Document.EFFECTS, text, Costs))
+    return _measure_costs(read(Document.EFFECTS, text, Costs))
 
 
-def measure_costs(costs: Costs) -> MeasuredCosts:
+def _measure_costs(costs: Costs) -> MeasuredCosts:
     """Count the operations of a scene's programs and measure their times at one point.
 
     The point is regular. Times are those of compiled C, or of NumPy without a C compiler.
-
-    Parameters
-    ----------
-    costs : Costs
-        Programs of the scene, of its terms and of its effects.
-
-    Returns
-    -------
-    MeasuredCosts
-        Costs in operations and in seconds.
-
-    Raises
-    ------
-    HolonomError
-        The C compiler rejects a program.
     """
     programs = [costs.program, *(part.program for part in costs.terms if part.program is not None)]
     programs += [each.otherwise for each in (*costs.effects, *costs.pairs) if each.otherwise is not None]

@@ -140,7 +140,7 @@ def _parts(tree: Tree, room: float) -> list[Part]:
             *rows, last = (_parts(item, room - COMMA.width) for item in items)
             return [*(part for row in rows for part in _before(row, COMMA, WIDE_SPACE)), *last]
         case _ if _is_sum(tree):
-            return [part for place, term in enumerate(signed_terms(tree)) for part in _term_parts(term, place, room)]
+            return [part for place, term in enumerate(_signed_terms(tree)) for part in _term_parts(term, place, room)]
         case ["Divide", 1, ["Multiply", *divisors]]:
             return _product_parts([["Divide", 1, divisor] for divisor in divisors], room)
         case ["Divide", numerator, denominator] if numerator != 1:
@@ -202,26 +202,15 @@ def _bracketed_parts(opening: Box, inner: Tree, closing: Box, room: float) -> li
     return _before(_after(opening, _parts(inner, room - opening.width - closing.width)), closing)
 
 
-def signed_terms(tree: Tree) -> list[SignedTerm]:
-    """Return the terms of a sum with their signs, or the expression as one term.
-
-    Parameters
-    ----------
-    tree : Tree
-        The formula.
-
-    Returns
-    -------
-    list of SignedTerm
-        Terms in the order of the tree.
-    """
+def _signed_terms(tree: Tree) -> list[SignedTerm]:
+    """Return the terms of a sum with their signs, or the expression as one term."""
     match tree:
         case ["Marked", colour, inner]:
-            return [_marked_term(term, colour) for term in signed_terms(inner)]
+            return [_marked_term(term, colour) for term in _signed_terms(inner)]
         case ["Add", *terms]:
             return [signed for term in terms for signed in _summand(term)]
         case ["Subtract", first, second]:
-            return [*signed_terms(first), SignedTerm("-", second)]
+            return [*_signed_terms(first), SignedTerm("-", second)]
         case ["Negate", inner]:
             return [SignedTerm("-", inner)]
         case int() if tree < 0:
@@ -237,7 +226,7 @@ def _marked_term(term: SignedTerm, colour: str) -> SignedTerm:
 
 
 def _summand(term: Tree) -> list[SignedTerm]:
-    return [SignedTerm("+", term)] if _head(term) == "Add" else signed_terms(term)
+    return [SignedTerm("+", term)] if _head(term) == "Add" else _signed_terms(term)
 
 
 def _sign(term: SignedTerm, place: int) -> Box:
@@ -257,7 +246,7 @@ def _content(tree: Tree) -> Tree:
 
 
 def _is_sum(tree: Tree) -> bool:
-    return _head(_content(tree)) in SUMS or signed_terms(_content(tree))[0].sign == "-"
+    return _head(_content(tree)) in SUMS or _signed_terms(_content(tree))[0].sign == "-"
 
 
 def _is_loose(tree: Tree) -> bool:
@@ -270,7 +259,7 @@ def _set(tree: Tree) -> Box:
         case str():
             return word(CONSTANTS[tree].latex, 1) if tree in CONSTANTS else name_box(tree)
         case _ if _is_sum(tree):
-            terms = enumerate(signed_terms(tree))
+            terms = enumerate(_signed_terms(tree))
             return beside(*(box for k, term in terms for box in (_sign(term, k), _factor(term.content))))
         case int():
             return digits(str(tree))

@@ -179,23 +179,12 @@ def _results(model: Model, item: str) -> list[str]:
 def _names(model: Model, name: str) -> Iterator[str]:
     groups = {group: getattr(model, group) for group in ("coordinates", "multipliers", "controls", "parameters")}
     for group, members in {**groups, "found_controls": model.found, "outputs": model.observed}.items():
-        listed = ", ".join([*map(c_string, members), "NULL"])
+        listed = ", ".join([*map(_c_string, members), "NULL"])
         yield f"const char *const {name}_{group}[] = {{{listed}}};"
 
 
-def c_string(text: str) -> str:
-    """Return a string literal of C that holds the text as UTF-8.
-
-    Parameters
-    ----------
-    text : str
-        Any text.
-
-    Returns
-    -------
-    str
-        The literal with its quotes.
-    """
+def _c_string(text: str) -> str:
+    """Return a string literal of C that holds the text as UTF-8."""
     plain = "".join(
         chr(byte) if 32 <= byte < 127 and byte not in b'"\\?' else f"\\{byte:03o}" for byte in text.encode()
     )

@@ -54,46 +54,25 @@ def write_model(model: Model, name: str) -> bytes:
     sources["fmi3.c"] = template("fmi3.c")
     token = hashlib.sha256("".join(sources.values()).encode()).hexdigest()
     sources["model.h"] = filled("model.h", name=name, NAME=name.upper(), token=token)
-    folder, suffix = platform_folder()
+    folder, suffix = _platform_folder()
     return _archive(
         {
-            "modelDescription.xml": _xml(model_description(model, name, token)),
+            "modelDescription.xml": _xml(_model_description(model, name, token)),
             f"binaries/{folder}/{name}{suffix}": _compiled(sources, name),
-            "sources/buildDescription.xml": _xml(build_description(name)),
+            "sources/buildDescription.xml": _xml(_build_description(name)),
             **{f"sources/{file}": text.encode() for file, text in sources.items()},
         }
     )
 
 
-def platform_folder() -> tuple[str, str]:
-    """Return the folder of the binary for this machine, and the binary's suffix.
-
-    Returns
-    -------
-    folder : str
-        Such as ``x86_64-linux``.
-    suffix : str
-        Such as ``.so``.
-    """
+def _platform_folder() -> tuple[str, str]:
+    """Return the folder of the binary for this machine, and the binary's suffix."""
     system, machine = platform.system().lower(), platform.machine().lower()
     return f"{MACHINES.get(machine, machine)}-{system}", SUFFIXES.get(system, ".so")
 
 
-def model_description(model: Model, name: str, token: str) -> ElementTree.Element:
-    """Return modelDescription.xml, with the value references of fmi3.c.
-
-    Parameters
-    ----------
-    model : Model
-    name : str
-        Identifier of the model.
-    token : str
-        Instantiation token, which the binary contains too.
-
-    Returns
-    -------
-    Element
-    """
+def _model_description(model: Model, name: str, token: str) -> ElementTree.Element:
+    """Return modelDescription.xml, with the value references of fmi3.c."""
     root = ElementTree.Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -124,18 +103,8 @@ def model_description(model: Model, name: str, token: str) -> ElementTree.Elemen
     return root
 
 
-def build_description(name: str) -> ElementTree.Element:
-    """Return sources/buildDescription.xml, to compile a unit without a binary.
-
-    Parameters
-    ----------
-    name : str
-        Identifier of the model.
-
-    Returns
-    -------
-    Element
-    """
+def _build_description(name: str) -> ElementTree.Element:
+    """Return sources/buildDescription.xml, to compile a unit without a binary."""
     root = ElementTree.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ElementTree.SubElement(root, "BuildConfiguration", modelIdentifier=name)
     files = ElementTree.SubElement(configuration, "SourceFileSet", language="C11")
