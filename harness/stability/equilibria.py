@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import scipy.linalg
+from numpy.typing import NDArray
 
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
 SPREADS = (0.5, 1.0, 2.0, 4.0, 8.0)  # of random starts, in terms of the coordinates' sizes
 DISTANCES = 4.0 ** np.arange(12)  # in terms of nominal sizes, at which changes of the stiffness are looked for
 CHANGED = 0.1  # relative change of the stiffness at the size of a coordinate
+BATCH = 64  # coordinates along which it is looked for at once
 ITERATIONS = 60
 CONVERGED = 1e-11  # step of Newton's method in terms of the sizes
 BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was met
@@ -272,21 +274,27 @@ class _Search:
         It is counted from the initial state, and is the nominal size at least, which is small if the motion is slow or
         short. A linear system has no other.
         """
-        steps = np.array([sign * distance * np.diag(nominal) for sign in (1, -1) for distance in DISTANCES])
-        states = self._first[:, None] + np.moveaxis(steps, 1, 0).reshape(self._n, -1)
-        changed = np.zeros(states.shape[1], dtype=bool)
+        sizes, unchanged = nominal.copy(), np.arange(self._n)
+        for distance in DISTANCES:
+            batches = np.array_split(unchanged, -(-len(unchanged) // BATCH) or 1)
+            changing = np.concatenate([places[self._changes(places, distance * nominal[places])] for places in batches])
+            sizes[changing] = distance * nominal[changing]
+            unchanged = np.setdiff1d(unchanged, changing)
+        return sizes
+
+    def _changes(self, places: NDArray[np.intp], distances: Vector) -> NDArray[np.bool_]:
+        """Return True for coordinates along which the stiffness changes at distances."""
+        k = len(places)
+        q = np.repeat(self._first[:, None], 2 * k + 1, axis=1)
+        q[[*places, *places], np.arange(2 * k)] += np.concatenate([distances, -distances])
+        changed = np.zeros(2 * k, dtype=bool)
         with np.errstate(all="ignore"):
-            here, there = (
-                self._at(q, np.zeros((len(self._equations.multipliers), q.shape[1])))
-                for q in (self._first[:, None], states)
-            )
+            found = self._at(q, np.zeros((len(self._equations.multipliers), 2 * k + 1)))
             for name in ("equation_by_q", "constraint_by_q"):
-                one, other, apart = (
-                    np.linalg.norm(each, axis=(0, 1)) for each in (here[name], there[name], there[name] - here[name])
-                )
+                there, here = found[name][:, :, :-1], found[name][:, :, -1:]
+                one, other, apart = (np.linalg.norm(each, axis=(0, 1)) for each in (here, there, there - here))
                 changed |= apart > CHANGED * np.maximum(one, other)
-        first = np.argmax(np.any(changed.reshape(2, len(DISTANCES), self._n), axis=0), axis=0)
-        return nominal * DISTANCES[first]
+        return changed[:k] | changed[k:]
 
     @cached_property
     def _start(self) -> Mapping[str, Matrix]:
