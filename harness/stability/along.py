@@ -52,6 +52,7 @@ from .linearization import (
     simulated,
     tangent_at,
 )
+from .repetition import equations_repeat
 from .request import AlongRequest
 from .tangent import Tangent
 
@@ -60,8 +61,7 @@ BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
 FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is computed
 COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives is estimated
 CLOSE = 1e-8  # relative error of Phi that is good enough; with all nodes it is far less
-ROUNDING = 1e-12  # of the terms of an equation
-RETURNED = 1e-8  # of the sizes: differences of two states, or of two equations, that are the same
+RETURNED = 1e-8  # of the sizes: differences of two states that are the same
 VANISHING = 1e-9  # multipliers relative to the terms that they are the sum of
 MATRICES = lists_of(MATRIX)
 POINTS = lists_of({"type": "object", "additionalProperties": {"type": "number"}})
@@ -142,7 +142,7 @@ class LinearizedMotion(Documented, Shown):
         **MATRICES,
     )
     error: float = entry("Estimated relative error of Phi at the last time, an upper bound in most cases.", minimum=0)
-    floquet: Floquet | None = entry("Null if the motion and its equations do not repeat after the last time.")
+    floquet: Floquet | None = entry("Null unless the state returns and the equations are known to repeat for ever.")
     free: FreeDeviations | None = entry("Null if the motion is not free, has no constraints, or switches.")
 
     _coordinates = _shared("coordinates", "The n coordinates.")
@@ -352,37 +352,11 @@ class _Nodes:
         """Return True if the state returns and the equations repeat."""
         first, last = self.points[0], self.points[-1]
         nominal = nominal_of(self._problem)
-        if self._problem.tables or np.any(
+        if np.any(
             np.abs(last.state - first.state) > RETURNED * np.concatenate([nominal.coordinates, nominal.velocities])
         ):
             return False
-        later = [self._later(node) for node in self.nodes]
-        return all(self._repeat(row, later) for row in ("equation", "constraint", "rate", "acceleration"))
-
-    def _later(self, node: _Node) -> Mapping[str, Matrix]:
-        """Return the equations at the same state after the motion's duration."""
-        t = node.point.t + self.duration
-        later = node.point._replace(t=t, controls=self._equations.controls_at(t))
-        return self._equations.at(later, self._problem.independent)
-
-    def _repeat(self, row: str, later: Sequence[Mapping[str, Matrix]]) -> bool:
-        """Return True if equations and their derivatives by the motion repeat.
-
-        They are compared at nominal sizes.
-        """
-        nominal = nominal_of(self._problem)
-        sizes = {"q": nominal.coordinates, "v": nominal.velocities, "a": nominal.accelerations}
-        here, there = (
-            np.array([
-                np.column_stack([at[row], *(at[f"{row}_by_{name}"] * size for name, size in sizes.items())])
-                for at in equations
-            ])
-            for equations in ([node.here for node in self.nodes], later)
-        )  # fmt: skip
-        largest = np.max(np.abs(here), axis=0)
-        terms = np.max(largest[:, 1:], axis=1, initial=0.0)
-        largest[:, 0] = terms
-        return bool(np.all(np.abs(here - there) <= RETURNED * largest + ROUNDING * terms[:, None]))
+        return equations_repeat(self._equations, self.duration)
 
 
 class _SwitchedNodes(_Nodes):

@@ -1,0 +1,169 @@
+"""Equations that repeat for ever, by the operations of their programs.
+
+Of a value f of a program, f(t + T) = f(t) + c or f(t + T) = c - f(t) with a number c is known, or nothing. The time has
+c = T. A sine repeats if c of its argument is a multiple of 2 pi, and changes its sign if it is an odd one of pi.
+"""
+
+from collections.abc import Callable
+from fractions import Fraction
+from math import e, isfinite, pi, prod
+from typing import NamedTuple
+
+import numpy as np
+
+from ..program.arithmetic import Arithmetic, run_program
+from ..program.motion_program import Constant, Operation
+from ..program.numpy_function import UFUNCS
+from .linear_equations import ROWS, LinearEquations
+
+ROWS_OF_MOTION = ROWS[:-1]  # their gradients by the state repeat with them
+COMMENSURATE = 1e-8  # of a phase after the period, whose digits are limited
+
+
+class Later(NamedTuple):
+    """The value f(t + T) = sign f(t) + change, or a number."""
+
+    sign: int = 1
+    change: float = 0.0
+    number: float | None = None
+
+
+Known = Later | None
+REPEATED = Later()
+
+
+def equations_repeat(equations: LinearEquations, period: float) -> bool:
+    """Return True if equations are known to repeat at all times, in all states.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+        Equations of a motion.
+    period : float
+        Time after which they are the same.
+
+    Returns
+    -------
+    bool
+    """
+    if equations.tables:
+        return False
+    time = {"t": Later(1, period)}
+    law = {} if equations.law is None else run_program(equations.law, time, LATER)
+    found = run_program(equations.program, dict.fromkeys(equations.program.inputs, REPEATED) | time | law, LATER)
+    return all(_repeated(each) for name, each in found.items() if name.partition("[")[0] in ROWS_OF_MOTION)
+
+
+def _repeated(*values: Known) -> Known:
+    """Return that a function of values repeats, if all of them do."""
+    return REPEATED if all(each is not None and each[:2] == (1, 0) for each in values) else None
+
+
+def _numeric(value: float) -> Known:
+    return Later(number=float(value)) if isfinite(value) else None
+
+
+def _sum(*terms: Later) -> Known:
+    signs = {each.sign for each in terms if each.number is None}
+    if len(signs) > 1:
+        return None
+    (sign,) = signs
+    return Later(sign, sum(each.change if each.number is None else (1 - sign) * each.number for each in terms))
+
+
+def _product(*factors: Later) -> Known:
+    numbers = prod(each.number for each in factors if each.number is not None)
+    changing = [each for each in factors if each.number is None]
+    if len(changing) == 1:
+        return Later(changing[0].sign, numbers * changing[0].change)
+    return None if any(each.change for each in changing) else Later(prod(each.sign for each in changing))
+
+
+def _quotient(above: Later, below: Later) -> Known:
+    if below.number is None:
+        return None if below.change else _product(above, below)
+    return _product(above, Later(number=1 / below.number)) if below.number else None
+
+
+def _even(argument: Later) -> Known:
+    return None if argument.change else REPEATED
+
+
+def _odd(argument: Later) -> Known:
+    return None if argument.change else Later(argument.sign)
+
+
+def _wave(otherwise: Callable[[Later], Known]) -> Callable[[Later], Known]:
+    """Return the rule of a sine or cosine.
+
+    Where the argument does not change by half turns, it is another one.
+    """
+
+    def rule(argument: Later) -> Known:
+        half_turns = round(argument.change / pi)
+        if argument.sign == 1 and half_turns and abs(argument.change - half_turns * pi) <= COMMENSURATE:
+            return Later((-1) ** abs(half_turns))
+        return otherwise(argument)
+
+    return rule
+
+
+ODD = (
+    Operation.SIGN,
+    Operation.TAN,
+    Operation.SINH,
+    Operation.TANH,
+    Operation.ARCSIN,
+    Operation.ARCTAN,
+    Operation.ARSINH,
+)
+RULES: dict[Operation, Callable[..., Known]] = {
+    **dict.fromkeys(ODD, _odd),
+    **dict.fromkeys((Operation.ABS, Operation.COSH), _even),
+    Operation.SIN: _wave(_odd),
+    Operation.COS: _wave(_even),
+    Operation.ADD: _sum,
+    Operation.SUBTRACT: lambda one, other: _sum(one, _product(MINUS, other)),
+    Operation.NEGATE: lambda one: _product(MINUS, one),
+    Operation.MULTIPLY: _product,
+    Operation.DIVIDE: _quotient,
+}
+MINUS = Later(number=-1.0)
+NUMBERS: dict[Operation, Callable[..., float]] = {
+    **UFUNCS,
+    Operation.ADD: lambda *terms: sum(terms),
+    Operation.SUBTRACT: np.subtract,
+    Operation.NEGATE: np.negative,
+    Operation.MULTIPLY: lambda *factors: prod(factors),
+    Operation.DIVIDE: np.divide,
+    Operation.POWER: np.power,
+}
+
+
+def _rule(operation: Operation) -> Callable[..., Known]:
+    of_numbers, of_values = NUMBERS.get(operation), RULES.get(operation, _repeated)
+
+    def rule(*arguments: Known) -> Known:
+        if None in arguments:
+            return None
+        numbers = [each.number for each in arguments if each.number is not None]
+        if of_numbers is None or len(numbers) < len(arguments):
+            return of_values(*arguments)
+        with np.errstate(all="ignore"):
+            return _numeric(of_numbers(*numbers))
+
+    return rule
+
+
+def _power(base: Known, exponent: Fraction) -> Known:
+    if base is not None and base.number is None and not base.change and exponent.denominator == 1:
+        return Later(base.sign ** abs(exponent.numerator))
+    return _rule(Operation.POWER)(base, _numeric(exponent))
+
+
+LATER = Arithmetic(
+    number=_numeric,
+    constants={Constant.PI: _numeric(pi), Constant.E: _numeric(e)},
+    power=_power,
+    operations={operation: _rule(operation) for operation in Operation},
+)
