@@ -179,6 +179,7 @@ FUNCTIONS = (
         "PolyGamma", "psi", r"\psi", "", ["PolyGamma", ["Add", "n", 1], "x"], "polygamma", 2, of_an_order=True,
         special=True,
     ),
+    Function("Zeta", "zeta", r"\zeta", special=True),
     *_airy("a"),
     *_airy("b"),
     *(_bessel("J", 1, -1), _bessel("Y", 1, -1), _bessel("I", 1, 1), _bessel("K", -1, -1)),

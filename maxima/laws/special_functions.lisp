@@ -9,7 +9,7 @@
 (in-package :maxima)
 
 (defvar *special-functions*
-  '(%bessel_j %bessel_y %bessel_i %bessel_k %gamma %erfc %airy_ai %airy_bi %airy_dai %airy_dbi
+  '(%bessel_j %bessel_y %bessel_i %bessel_k %gamma %zeta %erfc %airy_ai %airy_bi %airy_dai %airy_dbi
     %jacobi_sn %jacobi_cn %jacobi_dn mqapply)
   "Those that an expression may apply to the time; mqapply is psi[k](x).")
 

@@ -64,7 +64,7 @@ def test_the_differential_equation_gives_the_taylor_coefficients(function):
         assert all(abs(a - b) < mp.mpf(10) ** -12 * (1 + abs(b)) for a, b in pairs)
 
 
-@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.head)
+@pytest.mark.parametrize("function", [each for each in FUNCTIONS if each.head != "Zeta"], ids=lambda each: each.head)
 def test_the_derivative_is_that_of_the_values(function):
     given = [sympy.Rational(each) for each in numeric(trees(function)[1])]
     place = 1 if function.of_an_order else 0

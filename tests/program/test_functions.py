@@ -187,6 +187,6 @@ def test_signum_is_constant_between_its_jumps():
 
 def test_a_function_that_no_program_has_is_refused_by_its_name_and_its_place():
     scene = holonom.system("""
-        system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [zeta(2 + t)])$""")
+        system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [expintegral_si(2 + t)])$""")
     with refused("function_not_described"):
         scene.program().document  # noqa: B018

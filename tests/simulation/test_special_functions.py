@@ -102,6 +102,15 @@ def test_all_engines_follow_a_push_and_a_law_by_bessel_functions(pushed_problem:
     assert report.coordinates["y"] == pytest.approx(special.iv(1, 10), rel=DIGITS[engine])
 
 
+def test_special_functions_of_numbers_are_numbers(write_scene: WRITE):
+    scene = pushed(force="-bessel_j(0, c)*x", law="gamma(1/3)*sin(t)").replace("x = 0", "x = 1")
+    report = simulate(asked(write_scene(scene)), SimulationRequest(samples=0)).report
+    assert report.coordinates["x"] == pytest.approx(np.cos(10 * np.sqrt(special.j0(1))), abs=1e-13)
+    assert report.coordinates["y"] == pytest.approx(special.gamma(1 / 3) * np.sin(10), abs=1e-13)
+    with refused("special_not_rational"):
+        compute_series(write_scene(scene), SeriesRequest(order=3, digits="exact"), Limits())
+
+
 @pytest.mark.long
 @pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize("engine", DIGITS)
@@ -148,6 +157,13 @@ def test_the_series_of_a_gamma_function_to_order_24(write_scene: WRITE):
     with mpmath.workdps(40):
         for found, true in zip(series.coordinates["y"], mpmath.taylor(mpmath.gamma, 1, 24), strict=True):
             assert abs(mpmath.mpf(found) / true - 1) < 1e-28
+
+
+def test_the_start_of_a_gamma_function_is_agreed_on(write_scene: WRITE):
+    """Polygamma functions of whole numbers are values of Riemann's zeta function."""
+    report = holonom.load(write_scene(pushed(law="gamma(1 + t/2)"))).check()
+    (series,) = (each for each in report.verdicts if each.number == "18")
+    assert series.verdict in (Verdict.PROVED, Verdict.AGREES)
 
 
 @pytest.mark.parametrize(
