@@ -9,8 +9,10 @@ import fmpy
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from fmpy.fmi1 import FMICallException
 from fmpy.validation import validate_fmu
 from refusing import failing
+from scipy.integrate import solve_ivp
 
 from holonom.cli import holonom
 from holonom.failures import ErrorKind
@@ -122,3 +124,59 @@ def test_outputs_of_the_scene_are_outputs_of_the_unit(tmp_path, c_compiler):
     x, y, v, w, *found = (rows[name] for name in names)
     pull = 2 * (v**2 + w**2 - 10 * y) / (x**2 + y**2)
     assert np.array(found) == pytest.approx(np.array([pull, -pull * x / 2, -pull * y / 2 - 10]), rel=1e-12)
+
+
+# ---- parameters and controls of constraints --------------------------------------------------------------------------
+
+LENGTHS = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, l, g], potential_energy = m*g*y,
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + (y - u)^2 - l^2, (x^2 + (y - u)^2 - l^2)*u])$
+swing : holonomic_scene(system, control_law = [u = 1/10], parameter_values = [m = 3, l = 1, g = 10],
+  initial_state = [x = 3/5, dot(x) = 1/2], initial_guess = [y = -7/10], time_span = [0, 1])$
+"""
+
+
+@pytest.fixture(scope="module")
+def swing(tmp_path_factory, c_compiler) -> Path:
+    folder = tmp_path_factory.mktemp("lengths")
+    (folder / "scene.mac").write_text(LENGTHS)
+    unit = folder / "swing.fmu"
+    unit.write_bytes(
+        fmu.write_model(scene_model(folder / "scene.mac", Request(None), ["m", "l", "g"], Limits()), "swing")
+    )
+    return unit
+
+
+def angle_after(time: float, length: float, phi: float, rate: float) -> float:
+    solved = solve_ivp(lambda _, y: [y[1], -10 / length * np.sin(y[0])], (0, time), [phi, rate], rtol=1e-12, atol=1e-12)
+    return solved.y[0, -1]
+
+
+@pytest.mark.parametrize(("length", "u"), [(1, 0.1), (2, 0.1), (1, -0.3), (0.25, 0)])
+def test_the_start_follows_the_parameters_and_controls(swing, length, u):
+    """It satisfied the constraints of the scene's values alone, and the unit moved on those, whatever l and u were."""
+    law = np.array([(0, u), (1, u)], dtype=[("time", float), ("u", float)])
+    rows = fmpy.simulate_fmu(
+        str(swing), fmi_type="ModelExchange", stop_time=1, output_interval=1, relative_tolerance=1e-10,
+        start_values={"l": length}, input=law, output=["x", "y", "lambda1"],
+    )  # fmt: skip
+    x, y = rows["x"], rows["y"] - u
+    assert np.hypot(x, y) == pytest.approx(length, rel=1e-7)
+    assert [x[0], y[0]] == pytest.approx(np.array([0.6, -0.7 - u]) * length / np.hypot(0.6, 0.7 + u), rel=1e-12)
+    phi = np.arctan2(x, -y)
+    rate = (0.5 * np.cos(phi[0]) + 3 / 8 * np.sin(phi[0])) / length
+    assert phi[1] == pytest.approx(angle_after(1, length, phi[0], rate), abs=1e-7)
+
+
+def test_parameters_of_constraints_are_fixed(swing):
+    variables = {v.name: v for v in fmpy.read_model_description(str(swing)).modelVariables}
+    assert [variables[name].variability for name in ("m", "l", "g")] == ["tunable", "fixed", "tunable"]
+    assert list(validate_fmu(str(swing))) == []
+
+
+def test_a_start_without_a_state_nearby_is_an_error(tmp_path, c_compiler):
+    (tmp_path / "scene.mac").write_text(LENGTHS.replace("- l^2", "- l"))
+    unit = tmp_path / "unit.fmu"
+    unit.write_bytes(fmu.write_model(scene_model(tmp_path / "scene.mac", Request(None), ["l"], Limits()), "unit"))
+    with pytest.raises(FMICallException, match="fmi3ExitInitializationMode"):
+        fmpy.simulate_fmu(str(unit), fmi_type="ModelExchange", stop_time=1, start_values={"l": -1})

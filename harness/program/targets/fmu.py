@@ -1,8 +1,9 @@
 """A scene's model as an FMI 3.0 unit for model exchange, with its C sources.
 
 Controls with their time derivatives and second time derivatives are inputs, which start at the values of the control
-law. Open parameters are tunable. Coordinates and velocities are states. They, accelerations, multipliers and the
-scene's outputs are outputs.
+law. Open parameters are tunable, but fixed if constraints contain them. Coordinates and velocities are states, whose
+initial values are near: the unit projects them onto the constraints. They, accelerations, multipliers and the scene's
+outputs are outputs.
 """
 
 import hashlib
@@ -19,6 +20,7 @@ from ...temporary import private_directory
 from ..c_function import compile_shared
 from ..c_source import range_of
 from ..model import Model
+from ..motion_program import names_used
 from ..templates import filled, template
 from . import c
 
@@ -95,7 +97,7 @@ def _model_description(model: Model, name: str, token: str) -> ElementTree.Eleme
             by_role["Output"].append(reference)
         if "derivative" in variable.attrib:
             by_role["ContinuousStateDerivative"].append(reference)
-        if variable.get("initial") == "calculated":
+        if variable.get("initial") in ("calculated", "approx"):
             by_role["InitialUnknown"].append(reference)
     for role, references in by_role.items():
         for reference in references:
@@ -116,14 +118,16 @@ def _build_description(name: str) -> ElementTree.Element:
 def _variables(model: Model) -> Iterator[dict[str, str]]:
     """Attributes of every variable, in the order of the value references."""
     n, velocities = len(model.coordinates), [f"dot({name})" for name in model.coordinates]
+    initial, moving = ("approx", names_used(model.constraints)) if model.constraints else ("exact", set())
     yield {"name": "time", "causality": "independent", "variability": "continuous"}
     for state in (*model.coordinates, *velocities):
-        yield {"name": state, "causality": "output", "initial": "exact", "start": model.start[state]}
+        yield {"name": state, "causality": "output", "initial": initial, "start": model.start[state]}
     for history, value in zip(model.histories, _inputs_at_start(model), strict=True):
         yield {"name": history, "causality": "input", "start": value}
     for name in model.parameters:
+        variability = "fixed" if name in moving else "tunable"
         start = model.values[name]
-        yield {"name": name, "causality": "parameter", "variability": "tunable", "initial": "exact", "start": start}
+        yield {"name": name, "causality": "parameter", "variability": variability, "initial": "exact", "start": start}
     for s, name in enumerate((*model.coordinates, *velocities)):
         derivative = {"name": f"der({name})", "causality": "local", "initial": "calculated", "derivative": str(s + 1)}
         yield derivative if s < n else derivative | {"name": f"ddot({model.coordinates[s - n]})", "causality": "output"}

@@ -11,7 +11,8 @@
        FOUND        controls that servo-constraints find
        OBSERVED     outputs that the scene names
 
-   What lies before STORED is given. The rest is computed on request, once for each state.    */
+   What lies before STORED is given. The rest is computed on request, once for each state. The initial state is near:
+   at the end of the initialization it is projected onto the constraints of these parameters and controls.    */
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -42,11 +43,14 @@ enum { Q = 1, V = Q + N, U = V + N, P = U + 3*M, STORED = P + K, DQ = STORED, A 
 typedef struct {
     double x[ALL];
     bool computed;
+    fmi3LogMessageCallback log;
+    fmi3Environment environment;
 } Unit;
 
 static void initialize(Unit *unit)
 {
-    memset(unit, 0, sizeof *unit);
+    memset(unit->x, 0, sizeof unit->x);
+    unit->computed = false;
     MODEL(start)(unit->x, unit->x + Q, unit->x + V);
     MODEL(values)(unit->x + P);
     MODEL(law)(unit->x[0], unit->x + P, unit->x + U);
@@ -76,7 +80,10 @@ EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String tok
         return NULL;
     }
     Unit *unit = malloc(sizeof *unit);
-    if (unit) initialize(unit);
+    if (!unit) return NULL;
+    unit->log = log;
+    unit->environment = environment;
+    initialize(unit);
     return unit;
 }
 
@@ -97,8 +104,18 @@ EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance unit, bool with_toler
     return fmi3OK;
 }
 
+EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
+{
+    Unit *unit = instance;
+    double *x = unit->x;
+    unit->computed = false;
+    if (MODEL(project)(x[0], x + Q, x + V, x + U, x + P) == 0) return fmi3OK;
+    if (unit->log) unit->log(unit->environment, fmi3Error, "logStatusError",
+        "no state near the initial one satisfies the constraints; start nearer to one that does");
+    return fmi3Error;
+}
+
 #define MODE(name) EXPORT fmi3Status fmi3##name(fmi3Instance unit) { (void)unit; return fmi3OK; }
-MODE(ExitInitializationMode)
 MODE(EnterEventMode)
 MODE(EnterContinuousTimeMode)
 MODE(EvaluateDiscreteStates)
