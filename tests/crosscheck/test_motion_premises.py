@@ -164,7 +164,8 @@ def test_motions_that_took_too_long_are_undecided_in_each_scene(asked):
     without_scenes = replace(description, content=description.content | {"scenes": []})
     for described, name in ((description, "run"), (without_scenes, None)):
         (verdict,) = verdicts_out_of_time(described)
-        assert (verdict.scene, verdict.verdict) == (name, Verdict.UNDECIDED)
+        assert (verdict.scene, verdict.verdict, verdict.points) == (name, Verdict.UNDECIDED, None)
+        assert verdict.detail
 
 
 def test_a_guess_on_the_constraints_is_no_nearer_start(tmp_path):

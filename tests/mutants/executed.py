@@ -13,6 +13,7 @@ import re
 from collections import ChainMap, Counter, defaultdict
 from collections.abc import Iterator, Mapping
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 from copies import Copy, in_copies
@@ -22,7 +23,7 @@ APART = {"companion", "figures", "mutants", "reference", "typeset"}  # tests of 
 APART |= {"test_escapes.py", "test_escapes_of_a_user.py", "test_hostile.py", "test_kills.py"}  # of the sandbox
 APART |= {"test_lisps.py", "test_preloaded.py"}  # and of Maxima without the image, in which functions are defined anew
 QUICK = 0.05  # seconds of a test whose time pytest does not list
-SECONDS = 120.0  # of the tests that are run for a mutant, as measured
+SECONDS = 120.0  # of the tests that are run at once for a mutant, as measured
 SHARES = (1, 3, 6)  # tests in a row of a file, by its nearness to the function
 MARKS = "marks.txt"  # what the marks write in a copy
 LONGEST = 600  # seconds of processor time of a file's tests
@@ -194,8 +195,8 @@ class Executed:
             for function in measured["functions"]:
                 self._of[function].add(test)
 
-    def by(self, function: Function) -> list[str]:
-        """Return tests that execute a function, those of the nearest files first.
+    def by(self, function: Function) -> list[list[str]]:
+        """Return tests that execute a function, in portions, those of the nearest files first.
 
         A file named after that of the function is nearest, then one that names the function, whatever it is about. Of
         each file come the tests that execute the fewest functions: nearest files have `SHARES` of tests in a row.
@@ -207,8 +208,8 @@ class Executed:
 
         Returns
         -------
-        list of str
-            Tests that take `SECONDS` together, one at least if there is any. Those of a file are together.
+        list of list of str
+            Each portion takes `SECONDS` at most, or is one test. In a portion, those of a file are together.
         """
         breadth = {test: len(self._tests[test]["functions"]) for test in self._executing(function)}
         ranked, before = [], Counter()
@@ -217,13 +218,18 @@ class Executed:
             near = nearness(file, function)
             ranked.append((before[file] // SHARES[near], -near, breadth[test], test))
             before[file] += 1
-        chosen, left = defaultdict(list), SECONDS
+        portions: list[dict[str, list[str]]] = []
+        left, whole = 0.0, breadth.keys() & {test.partition("::")[0] for test in breadth}
         for *_, test in sorted(ranked):
-            left -= self._tests[test]["seconds"] or QUICK
-            if left < 0 and chosen:
-                break
-            chosen[test.partition("::")[0]].append(test)
-        return [test for file, tests in chosen.items() for test in ([file] if file in tests else tests)]
+            file, seconds = test.partition("::")[0], self._tests[test]["seconds"] or QUICK
+            if file in whole and test != file:
+                continue
+            if seconds > left:
+                portions.append(defaultdict(list))
+                left = SECONDS
+            portions[-1][file].append(test)
+            left -= seconds
+        return [[*chain.from_iterable(portion.values())] for portion in portions]
 
     def while_loading(self, function: Function) -> bool:
         """Return True if a function of Maxima runs while the library is loaded.

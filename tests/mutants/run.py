@@ -1,9 +1,9 @@
 """Measure the tests: make wrong programs at random and count those that no test finds.
 
-A seed draws functions of the sources, in each a kind of change, and a change of that kind. The nearest tests of each
-mutant run in a copy of the sources. It is killed when one of them fails or takes too long; at the end these tests have
-to pass without a mutant. Mutants that are listed as equivalent are not run. A run that was interrupted continues from
-its JSON file; survivors meet changed tests again.
+A seed draws functions of the sources, in each a kind of change, and a change of that kind. The tests that execute the
+function run in a copy of the sources, the nearest first. The mutant is killed when one of them fails or takes too long;
+at the end these tests have to pass without a mutant. Mutants that are listed as equivalent are not run. A run that was
+interrupted continues from its JSON file; survivors meet changed tests again.
 
     python tests/mutants/run.py build/mutants.json [--seed SEED] [--count COUNT] [--jobs JOBS]
 """
@@ -24,7 +24,7 @@ import tomllib
 import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 
 from changes import changes
@@ -116,15 +116,13 @@ def allow_redefinition(copy: Copy) -> None:
 
 
 def killer(copy: Copy, mutant: Mutant, executed: Executed) -> str:
-    """Return the first test that fails with the mutant, or "" if it survives."""
-    tests, function = executed.by(mutant.function), mutant.function
-    if not tests:
-        return ""
+    """Return the first test that fails with the mutant, or "" if it survives all that execute its function."""
+    function = mutant.function
     is_in_image = f'"{function.path.removeprefix("maxima/")}"' in read("maxima/holonom.mac")
-    if function.language != "mac" or not is_in_image or executed.while_loading(function):
-        return _failing_with(copy, function.path, mutant.source, tests)
-    definition = quoted(f"{function.head}{mutant.body}$")
-    return _failing_with(copy, REDEFINED, REDEFINITION.format(definition), tests)
+    path, text = function.path, mutant.source
+    if function.language == "mac" and is_in_image and not executed.while_loading(function):
+        path, text = REDEFINED, REDEFINITION.format(quoted(f"{function.head}{mutant.body}$"))
+    return next(filter(None, (_failing_with(copy, path, text, tests) for tests in executed.by(function))), "")
 
 
 def _failing_with(copy: Copy, path: str, text: str, tests: Sequence[str]) -> str:
@@ -184,7 +182,7 @@ def main() -> None:
     given.results.parent.mkdir(parents=True, exist_ok=True)
     executed = measure(given.results.parent / "executed", given.jobs)
     chosen = {mutant: executed.by(mutant.function) for mutant in islice(draw(seed), given.count)}
-    digests = {mutant: (mutant.digest(), mutant.digest(files_of(tests))) for mutant, tests in chosen.items()}
+    digests = {each: (each.digest(), each.digest(files_of(chain(*tests)))) for each, tests in chosen.items()}
     outcomes, listed = {}, reasons()
     for mutant, (own, with_tests) in digests.items():
         found, met = known.get(own, ("", ""))

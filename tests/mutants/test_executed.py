@@ -24,21 +24,21 @@ def near(monkeypatch):
     return found
 
 
-def test_the_most_specific_tests_come_first_while_there_is_time(near):
-    assert executed.Executed(TESTS).by(FIRST) == ["b.py::slow"], "one at least, whatever it takes"
+def test_the_most_specific_tests_come_first_in_portions_of_some_seconds(near):
+    assert executed.Executed(TESTS).by(FIRST) == [["b.py::slow"], ["c.py::quick", "a.py::wide[x]"]]
     quick = {**TESTS, "b.py::slow": {**TESTS["b.py::slow"], "seconds": 1}}
-    assert executed.Executed(quick).by(FIRST) == ["b.py::slow", "c.py::quick", "a.py::wide[x]"]
-    assert executed.Executed(quick).by(SECOND) == ["a.py::wide[x]"]
+    assert executed.Executed(quick).by(FIRST) == [["b.py::slow", "c.py::quick", "a.py::wide[x]"]]
+    assert executed.Executed(quick).by(SECOND) == [["a.py::wide[x]"]]
 
 
 def test_the_nearest_files_come_first_with_more_tests_in_a_row(near):
     third = executed.SECONDS / 3
     tests = {f"{file}.py::{n}": {"seconds": third, "functions": [str(FIRST)] * n} for file in "ab" for n in (1, 2, 3)}
-    assert executed.Executed(tests).by(FIRST) == ["a.py::1", "a.py::2", "b.py::1"]
+    assert executed.Executed(tests).by(FIRST)[0] == ["a.py::1", "a.py::2", "b.py::1"]
     near["b.py"] = 1
-    assert executed.Executed(tests).by(FIRST) == ["b.py::1", "b.py::2", "b.py::3"]
+    assert executed.Executed(tests).by(FIRST) == [[f"{file}.py::{n}" for n in (1, 2, 3)] for file in "ba"]
     tests = {each: {**measured, "seconds": 1} for each, measured in tests.items()}
-    assert executed.Executed(tests).by(FIRST) == [f"{file}.py::{n}" for file in "ba" for n in (1, 2, 3)]
+    assert executed.Executed(tests).by(FIRST) == [[f"{file}.py::{n}" for file in "ba" for n in (1, 2, 3)]]
 
 
 def test_a_test_file_is_near_the_file_that_it_is_named_after_and_the_functions_that_it_names():
@@ -53,14 +53,14 @@ def test_a_test_file_is_near_the_file_that_it_is_named_after_and_the_functions_t
 
 def test_what_a_fixture_executes_asks_for_the_whole_file(near):
     tests = {each: {"seconds": 1, "functions": [str(FIRST)]} for each in ("a.py", "a.py::x", "b.py::y")}
-    assert executed.Executed(tests).by(FIRST) == ["a.py", "b.py::y"]
+    assert executed.Executed(tests).by(FIRST) == [["a.py", "b.py::y"]]
 
 
 def test_a_function_that_was_not_measured_has_the_tests_of_its_callers(near):
     found = {str(each): each for each in sources.functions()}
     name, caller = "maxima/steps.mac::meaning_of", "maxima/steps.mac::require_meanings"
     tests = {"tests/a.mac": {"seconds": 1, "functions": [caller]}}
-    assert executed.Executed(tests).by(found[name]) == ["tests/a.mac"]
+    assert executed.Executed(tests).by(found[name]) == [["tests/a.mac"]]
     assert executed.Executed(tests).by(OTHER) == []
     everything_of_maxima = {"tests/a.mac": {"seconds": 1, "functions": [name for name in found if ".py::" not in name]}}
     assert executed.Executed(everything_of_maxima).by(found["harness/sweeps/axes.py::Axes.names"]) == []
