@@ -34,9 +34,10 @@ from ..simulation.evaluation import one_blas_thread
 from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
-from .equivalence import TURN, Equivalence
+from .equivalence import Equivalence
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, changing_function, linearized, perturbed_eigenvalues
+from .repetition import reversible, whole_turns
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -66,8 +67,7 @@ PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
 EULER_PARAMETERS = 4
-PROBES = 5  # random states at which whole turns and reversals of coordinates are tried
-UNCHANGED = 1e-9  # relative change of an equation by them that is none
+PROBES = 5  # random states at which Euler parameters are looked for
 
 
 class Stability(StrEnum):
@@ -316,30 +316,17 @@ class _Search:
         return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
 
     def equivalence(self, random: np.random.Generator) -> Equivalence:
-        """Return the changes of coordinates that leave a state as it is.
+        """Return the changes of coordinates that leave a state as it is."""
+        bodies = self._normalised(random)
+        return Equivalence(whole_turns(self._equations), [e for e in bodies if reversible(self._equations, e)])
 
-        They are tried at random states.
+    def _normalised(self, random: np.random.Generator) -> list[list[int]]:
+        """Return the places of Euler parameters.
+
+        At random states, they have a constraint e . e = 1, and no inertia along e.
         """
         states = [self._first + self._sizes * random.normal(size=self._n) for _ in range(PROBES)]
         multipliers = random.normal(size=len(self._equations.multipliers))
-        found = [(q, self._at(q, multipliers)) for q in states]
-        ones, zeros, places = np.ones(self._n), np.zeros(self._n), np.arange(self._n)
-
-        def unchanged(signs: Vector, step: Vector) -> bool:
-            return all(
-                _equivalent(here, self._at(signs * q + step, multipliers), signs, signs * q + step) for q, here in found
-            )
-
-        steps = np.diag(TURN * np.ceil(np.maximum(1.0, self._sizes / TURN)))
-        turns = [k for k, step in enumerate(steps) if unchanged(ones, step)]
-        normalised = self._normalised(states, multipliers)
-        return Equivalence(turns, [e for e in normalised if unchanged(np.where(np.isin(places, e), -1.0, 1.0), zeros)])
-
-    def _normalised(self, states: Sequence[Vector], multipliers: Vector) -> list[list[int]]:
-        """Return the places of Euler parameters.
-
-        They have a constraint e . e = 1, and no inertia along e.
-        """
         found = [self._all_constraints(q, multipliers) for q in states]
         slopes = np.array([here["constraint_by_q"] for here in found])  # by state, constraint and coordinate
         places = [np.flatnonzero(slopes[:, beta].any(axis=0)) for beta in range(slopes.shape[1])]
@@ -646,15 +633,6 @@ class _Solution(NamedTuple):
         apart = np.max(np.abs(self._principal - other._principal), initial=0.0)
         alike = _same(self.multipliers, other.multipliers) and apart <= SAME * max(self.bound, other.bound)
         return bool(alike and not self.isolated and not other.isolated)
-
-
-def _equivalent(here: Mapping[str, Matrix], there: Mapping[str, Matrix], signs: Vector, q: Vector) -> bool:
-    """Return True if equations are those at the coordinates q, but for signs."""
-    for name, factor in (("equation", signs), ("constraint", 1.0)):
-        rounding = ROUNDING * np.abs(there[f"{name}_by_q"]) @ np.abs(q)
-        if np.any(np.abs(here[name] - factor * there[name]) > UNCHANGED * np.abs(here[name]) + rounding):
-            return False
-    return True
 
 
 def _vanishes(matrix: Matrix, vector: Vector) -> bool:

@@ -1,10 +1,11 @@
-"""Equations that repeat for ever, by the operations of their programs.
+"""Equations that repeat for ever or after whole turns, by their programs.
 
-Of a value f of a program, f(t + T) = f(t) + c or f(t + T) = c - f(t) with a number c is known, or nothing. The time has
-c = T. A sine repeats if c of its argument is a multiple of 2 pi, and changes its sign if it is an odd one of pi.
+Of a value f of a program, f -> f + c or f -> c - f with a number c is known, or nothing, where the time moves on by a
+period, a coordinate by a turn, or some change their signs. A sine repeats if c of its argument is a multiple of 2 pi,
+and changes its sign if it is an odd one of pi.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import e, isfinite, pi, prod
 from typing import NamedTuple
@@ -14,14 +15,15 @@ import numpy as np
 from ..program.arithmetic import Arithmetic, run_program
 from ..program.motion_program import Constant, Operation
 from ..program.numpy_function import UFUNCS
+from .equivalence import TURN
 from .linear_equations import ROWS, LinearEquations
 
 ROWS_OF_MOTION = ROWS[:-1]  # their gradients by the state repeat with them
-COMMENSURATE = 1e-8  # of a phase after the period, whose digits are limited
+COMMENSURATE = 1e-8  # of a phase after a period, whose digits are limited
 
 
 class Later(NamedTuple):
-    """The value f(t + T) = sign f(t) + change, or a number."""
+    """The later value sign f + change of f, or a number."""
 
     sign: int = 1
     change: float = 0.0
@@ -50,8 +52,51 @@ def equations_repeat(equations: LinearEquations, period: float) -> bool:
         return False
     time = {"t": Later(1, period)}
     law = {} if equations.law is None else run_program(equations.law, time, LATER)
-    found = run_program(equations.program, dict.fromkeys(equations.program.inputs, REPEATED) | time | law, LATER)
-    return all(_repeated(each) for name, each in found.items() if name.partition("[")[0] in ROWS_OF_MOTION)
+    return set(_rows_after(equations, time | law).values()) <= {1}
+
+
+def whole_turns(equations: LinearEquations) -> list[int]:
+    """Return the places of coordinates that whole turns are known not to change.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+        Equations that do not contain the time.
+
+    Returns
+    -------
+    list of int
+    """
+    turned = [_rows_after(equations, {name: Later(1, TURN)}) for name in equations.coordinates]
+    return [k for k, rows in enumerate(turned) if set(rows.values()) <= {1}]
+
+
+def reversible(equations: LinearEquations, places: Sequence[int]) -> bool:
+    """Return True if other signs of some coordinates are known to be the same state.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+        Equations that do not contain the time.
+    places : sequence of int
+        Places of these coordinates.
+
+    Returns
+    -------
+    bool
+    """
+    names = [equations.coordinates[k] for k in places]
+    moved = {each.format(name): Later(-1) for name in names for each in ("{}", "dot({})", "ddot({})")}
+    odd = {f"equation[{k + 1}]" for k in places}
+    return all(sign == (-1 if row in odd else 1) for row, sign in _rows_after(equations, moved).items())
+
+
+def _rows_after(equations: LinearEquations, changes: Mapping[str, Known]) -> dict[str, int]:
+    """Return the later signs of the equations' rows, 0 where nothing is known."""
+    inputs = dict.fromkeys(equations.program.inputs, REPEATED) | changes
+    found = run_program(equations.program, inputs, LATER)
+    rows = {name: each for name, each in found.items() if name.partition("[")[0] in ROWS_OF_MOTION}
+    return {name: 0 if each is None or each.change else each.sign for name, each in rows.items()}
 
 
 def _repeated(*values: Known) -> Known:
@@ -93,8 +138,8 @@ def _odd(argument: Later) -> Known:
     return None if argument.change else Later(argument.sign)
 
 
-def _wave(otherwise: Callable[[Later], Known]) -> Callable[[Later], Known]:
-    """Return the rule of a sine or cosine.
+def _wave(half_turned: int, otherwise: Callable[[Later], Known]) -> Callable[[Later], Known]:
+    """Return the rule of a function that half a turn multiplies by a factor.
 
     Where the argument does not change by half turns, it is another one.
     """
@@ -102,7 +147,7 @@ def _wave(otherwise: Callable[[Later], Known]) -> Callable[[Later], Known]:
     def rule(argument: Later) -> Known:
         half_turns = round(argument.change / pi)
         if argument.sign == 1 and half_turns and abs(argument.change - half_turns * pi) <= COMMENSURATE:
-            return Later((-1) ** abs(half_turns))
+            return Later(half_turned ** abs(half_turns))
         return otherwise(argument)
 
     return rule
@@ -120,8 +165,9 @@ ODD = (
 RULES: dict[Operation, Callable[..., Known]] = {
     **dict.fromkeys(ODD, _odd),
     **dict.fromkeys((Operation.ABS, Operation.COSH), _even),
-    Operation.SIN: _wave(_odd),
-    Operation.COS: _wave(_even),
+    Operation.SIN: _wave(-1, _odd),
+    Operation.COS: _wave(-1, _even),
+    Operation.TAN: _wave(1, _odd),
     Operation.ADD: _sum,
     Operation.SUBTRACT: lambda one, other: _sum(one, _product(MINUS, other)),
     Operation.NEGATE: lambda one: _product(MINUS, one),

@@ -1,7 +1,8 @@
-"""Equations that repeat after a period: laws whose periods are known, and others that agree with such for a while."""
+"""Equations that repeat after a period or a turn, and others that agree with such for a while."""
 
 import numpy as np
 import pytest
+import sympy as sp
 
 import holonom
 
@@ -48,3 +49,35 @@ def test_a_period_has_the_digits_that_are_given(digits):
     scene = holonom.system(SCENE.format(law="4 + sin(t)", stiffness="u"))
     found = scene.linearize_along(until=f"{2 * np.pi:.{digits}f}", samples=2)
     assert (found.floquet is not None) is (digits == 12)
+
+
+# ---- whole turns -----------------------------------------------------------------------------------------------------
+
+TURNING = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + (1 + cos(x)^2)*dot(y)^2)/2,
+  potential_energy = {potential})$
+s : holonomic_scene(system, initial_state = [x = 1/10, y = 0, dot(x) = 0, dot(y) = 0])$"""
+
+
+@pytest.mark.parametrize(
+    ("potential", "turns"),
+    [
+        ("-cos(x) + y^2/2", ("x",)),
+        ("-cos(x + 2*y) - cos(y)", ("x", "y")),
+        ("-cos(x + y/2) + sin(y/2)*cos(y/2)", ("x",)),
+        ("sin(x/2)^2 + tan(y/2)^2/(1 + tan(y/2)^2)", ("x", "y")),
+        ("-cos(x/2) + y^2/2", ()),
+        ("-cos(3*x/2) - cos(y)*exp(sin(y))", ("y",)),
+        ("-cos(x) + y^2/2 - 30*exp(-(x - 12)^2)", ()),
+        ("-10*cos(x) + exp(5*(x - 20)) + y^2/2", ()),
+        ("-10*cos(x) + 25*max(0, x - 20)^2 + y^2/2", ()),
+    ],
+)
+def test_coordinates_that_whole_turns_do_not_change(potential, turns):
+    """Far from the initial state a well, a wall and a stop were not met: those near 3 pi were listed near pi."""
+    found = holonom.system(TURNING.format(potential=potential)).equilibria(starts=100)
+    assert found.turns == turns
+    x, y = sp.symbols("x y", real=True)
+    energy = sp.parse_expr(potential.replace("^", "**").replace("max", "Max"), local_dict={"x": x, "y": y})
+    for each in found:
+        at = {x: each.coordinates["x"], y: each.coordinates["y"]}
+        assert [float(sp.diff(energy, q).subs(at)) for q in (x, y)] == pytest.approx([0, 0], abs=1e-6)
