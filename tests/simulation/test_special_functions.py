@@ -111,6 +111,13 @@ def test_special_functions_of_numbers_are_numbers(write_scene: WRITE):
         compute_series(write_scene(scene), SeriesRequest(order=3, digits="exact"), Limits())
 
 
+def test_a_switching_surface_of_a_special_function_has_its_name(write_scene: WRITE):
+    scene = pushed(force="max(bessel_j(0, t), 0)", more="time_span = [0, 3]")
+    (switching,) = simulate(asked(write_scene(scene)), SimulationRequest(samples=0)).report.switchings
+    assert switching.function == "bessel_j(0,t)"
+    assert switching.t == pytest.approx(special.jn_zeros(0, 1)[0], rel=1e-14)
+
+
 @pytest.mark.long
 @pytest.mark.usefixtures("c_compiler")
 @pytest.mark.parametrize("engine", DIGITS)
