@@ -22,9 +22,9 @@ import tempfile
 import time
 import tomllib
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import islice
 from pathlib import Path
 
 from changes import changes
@@ -115,14 +115,14 @@ def allow_redefinition(copy: Copy) -> None:
     failing(copy, "tests/maxima/rtest_ranks.mac")
 
 
-def killer(copy: Copy, mutant: Mutant, executed: Executed) -> str:
-    """Return the first test that fails with the mutant, or "" if it survives all that execute its function."""
+def killer(copy: Copy, mutant: Mutant, tests: Sequence[str], executed: Executed) -> str:
+    """Return the first of the tests that fails with the mutant, or ""."""
     function = mutant.function
     is_in_image = f'"{function.path.removeprefix("maxima/")}"' in read("maxima/holonom.mac")
-    path, text = function.path, mutant.source
-    if function.language == "mac" and is_in_image and not executed.while_loading(function):
-        path, text = REDEFINED, REDEFINITION.format(quoted(f"{function.head}{mutant.body}$"))
-    return next(filter(None, (_failing_with(copy, path, text, tests) for tests in executed.by(function))), "")
+    if function.language != "mac" or not is_in_image or executed.while_loading(function):
+        return _failing_with(copy, function.path, mutant.source, tests)
+    definition = quoted(f"{function.head}{mutant.body}$")
+    return _failing_with(copy, REDEFINED, REDEFINITION.format(definition), tests)
 
 
 def _failing_with(copy: Copy, path: str, text: str, tests: Sequence[str]) -> str:
@@ -166,6 +166,25 @@ def report(outcomes: dict[Mutant, str]) -> None:
               f"{equivalent} more are equivalent.")  # fmt: skip
 
 
+def judged(
+    number: int, chosen: Mapping[Mutant, Sequence[Sequence[str]]], known: Mapping, jobs: int, executed: Executed
+) -> Iterator[tuple[Mutant, str, str]]:
+    """Run a portion of their tests for mutants that survive and have not met these files; yield killers and digests."""
+    portions = {mutant: tests[number - 1] for mutant, tests in chosen.items() if len(tests) >= number}
+    digests = {mutant: f"{number}:{mutant.digest(files_of(tests))}" for mutant, tests in portions.items()}
+    left, listed = [], reasons()
+    for mutant, digest in digests.items():
+        found, met = known.get(mutant.digest(), ("", []))
+        if not found and digest not in met and str(mutant) not in listed:
+            left.append(mutant)
+
+    def outcome(copy: Copy, mutant: Mutant) -> str:
+        return killer(copy, mutant, portions[mutant], executed)
+
+    for mutant, found in in_copies(outcome, left, jobs, allow_redefinition):
+        yield mutant, found, digests[mutant]
+
+
 def main() -> None:
     """Run what has not been run."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -182,25 +201,15 @@ def main() -> None:
     given.results.parent.mkdir(parents=True, exist_ok=True)
     executed = measure(given.results.parent / "executed", given.jobs)
     chosen = {mutant: executed.by(mutant.function) for mutant in islice(draw(seed), given.count)}
-    digests = {each: (each.digest(), each.digest(files_of(chain(*tests)))) for each, tests in chosen.items()}
-    outcomes, listed = {}, reasons()
-    for mutant, (own, with_tests) in digests.items():
-        found, met = known.get(own, ("", ""))
-        if found or met == with_tests or str(mutant) in listed:
-            outcomes[mutant] = found
-    left = [mutant for mutant in chosen if mutant not in outcomes]
-
-    def outcome(copy: Copy, mutant: Mutant) -> str:
-        return killer(copy, mutant, executed)
-
-    for mutant, found in in_copies(outcome, left, given.jobs, allow_redefinition):
-        outcomes[mutant] = found
-        print(f"{len(outcomes)}/{len(chosen)} {f'killed by {found}' if found else 'SURVIVES'}: {mutant}", flush=True)
-        own, with_tests = digests[mutant]
-        known[own] = (found, with_tests)
-        given.results.write_text(json.dumps({"seed": seed, "outcomes": known}, indent=0), encoding="utf-8")
+    for number in range(1, max(map(len, chosen.values()), default=0) + 1):  # survivors meet further tests
+        for mutant, found, digest in judged(number, chosen, known, given.jobs, executed):
+            own = mutant.digest()
+            known[own] = (found, [*known.get(own, ("", []))[1], digest])
+            print(f"{number}: {f'killed by {found}' if found else 'SURVIVES'}: {mutant}", flush=True)
+            given.results.write_text(json.dumps({"seed": seed, "outcomes": known}, indent=0), encoding="utf-8")
+    outcomes = {mutant: known.get(mutant.digest(), ("", []))[0] for mutant in chosen}
     require_passing(set(filter(None, outcomes.values())))
-    report({mutant: outcomes[mutant] for mutant in chosen})
+    report(outcomes)
 
 
 if __name__ == "__main__":
