@@ -165,7 +165,8 @@ def _quality(report: "Report") -> Iterator[str]:
         yield f"The last digits of the initial state are corrected to satisfy the constraints, {name} most, by {size}."
     if report.moved is not None:
         name, size = report.moved
-        yield f"The initial state differs from initial_guess most in {name}, by {size}."
+        differs = f"The initial state differs from initial_guess most in {name}, by {size}."
+        yield differs if float(size) else "initial_guess satisfies the constraints."
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
