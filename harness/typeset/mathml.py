@@ -15,6 +15,7 @@ COLOURS = ("misprint", "correction")
 PUNCTUATION = {";", "!"}  # characters to latex2mathml
 SIGNS = {"+", "\u2212"}
 BEFORE_A_PREFIX = {"=", "(", "[", ","}  # what a sign that belongs to one term alone stands after
+ROWS = ("}math", "}mrow", "}mstyle", "}mtd")
 UNKNOWN_TO_CORE = ("columnspacing", "rowspacing", "columnalign", "fence")
 
 ElementTree.register_namespace("", NAMESPACE)
@@ -67,7 +68,8 @@ def inline_mathml(latex: str, alt: str = "") -> str:
 
 def _converted(latex: str, alt: str, display: str) -> str:
     root = ElementTree.fromstring(_by_latex2mathml(latex.replace("{aligned}", "{split}"), display))
-    for element in root.iter():
+    for element in root.iter():  # a row before what is in it
+        _set_functions_apart(element)
         _to_core(element)
         _bind_signs(element)
     root.set("alttext", alt or " ".join(latex.split()))
@@ -94,6 +96,19 @@ def _to_core(element: Element) -> None:
         element.tag = f"{{{NAMESPACE}}}mi"
     for unknown in UNKNOWN_TO_CORE:
         element.attrib.pop(unknown, None)
+
+
+def _set_functions_apart(row: Element) -> None:
+    """Insert TeX's thin space between the name of a function and an argument without brackets."""
+    for place in reversed(range(1, len(row) if row.tag.endswith(ROWS) else 1)):
+        name, argument = (_first_part(each) for each in row[place - 1 : place + 1])
+        if len(name.text or "") > 1 and name.text.isalpha() and argument.tag.endswith(("}mi", "}mn")):
+            row.insert(place, Element(f"{{{NAMESPACE}}}mspace", width="0.167em"))
+
+
+def _first_part(element: Element) -> Element:
+    """Return the innermost element that an element begins with."""
+    return _first_part(element[0]) if len(element) else element
 
 
 def _bind_signs(row: Element) -> None:
