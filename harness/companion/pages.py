@@ -9,20 +9,21 @@ from typing import TYPE_CHECKING
 import jinja2
 import numpy as np
 from markupsafe import Markup, escape
-from sympy import Expr, simplify  # noqa: F401
+from sympy import Expr, Float, Rational, simplify  # noqa: F401
 
 from ..explanations import advice, engine_text, notes  # noqa: F401, for the heads of pages, as simplify
 from ..failures import ErrorKind, HolonomError
 from ..figures import benchmark, curves, drawing, motion
 from ..figures.style import Picture
 from ..files import shared
-from ..free_motion import UniversalLaw
+from ..free_motion import FirstCoefficient, UniversalLaw
 from ..language import gettext, ngettext, spoken, translated
 from ..maxima import statement_ends
 from ..number_texts import number
 from ..program.motion_program import Program
 from ..program.targets import javascript
 from ..record import Scene
+from ..typeset.latex import latex, latex_tree
 from . import EXAMPLES, TEMPLATES, cards, convergence, mathematics, motions, power, table, worked_example
 from .cards import Card
 
@@ -166,6 +167,14 @@ def _pair(value: complex) -> str:
 def _coefficient(text: str) -> str:
     """Return an exact number that is short, or a rounded one."""
     return text if len(text) <= LONGEST_COEFFICIENT else f"{float(number(text)):.10g}"
+
+
+def _first_term(first: FirstCoefficient) -> Markup:
+    """Return the beginning of a power series of a multiplier within a line of text."""
+    shown = _coefficient(first.value)
+    value = latex(Rational(shown) if shown == first.value else Float(shown))
+    power = {0: "", 1: " (t - t_0)"}.get(first.order, f" (t - t_0)^{{{first.order}}}")
+    return mathematics.tex(f"{latex_tree(first.multiplier)} = {value}{power} + \\ldots")
 
 
 def _maxima_text(text: str) -> Markup:

@@ -1,6 +1,7 @@
 """`holonom companion SCENE... -o DIR`: the same pages for anybody's system, and refusals that say why."""
 
 import re
+from xml.etree import ElementTree
 
 import pages
 import pytest
@@ -9,7 +10,9 @@ from own_system import SMOOTH, TEXTS, UNCONSTRAINED, made
 from refusing import message_of
 
 from holonom.companion.directives import FILES
+from holonom.companion.pages import _first_term
 from holonom.failures import ErrorKind
+from holonom.free_motion import FirstCoefficient
 
 CHAPTERS = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "motion")
 
@@ -105,3 +108,12 @@ def test_of_a_companion_what_was_written_is_replaced_and_the_rest_stays(tmp_path
     shown = pages.words(directory / "the-system.html")
     assert "Sledge" in shown
     assert "The file has no scene" in shown
+
+
+@pytest.mark.parametrize(
+    ("order", "value", "shown"),
+    [(0, "-14", "λ1=−14+…"), (1, "1/2", "λ1=12(t−t0)+…"), (3, "1.23456789012345e-5", "λ1=1.23456789·10−5(t−t0)3+…")],
+)
+def test_the_first_term_of_a_multiplier_is_one_formula(order, value, shown):
+    formula = _first_term(FirstCoefficient("lambda1", order, value))
+    assert "".join(ElementTree.fromstring(formula).itertext()) == shown
