@@ -170,7 +170,7 @@ def _coefficient(text: str) -> str:
 
 
 def _first_term(first: FirstCoefficient) -> Markup:
-    """Return the beginning of a power series of a multiplier within a line of text."""
+    """Return the first term of a power series, within a line of text."""
     shown = _coefficient(first.value)
     value = latex(Rational(shown) if shown == first.value else Float(shown))
     power = {0: "", 1: " (t - t_0)"}.get(first.order, f" (t - t_0)^{{{first.order}}}")

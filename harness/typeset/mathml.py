@@ -99,7 +99,7 @@ def _to_core(element: Element) -> None:
 
 
 def _set_functions_apart(row: Element) -> None:
-    """Insert TeX's thin space between the name of a function and an argument without brackets."""
+    """Insert a thin space between a function and an argument without brackets."""
     for place in reversed(range(1, len(row) if row.tag.endswith(ROWS) else 1)):
         name, argument = (_first_part(each) for each in row[place - 1 : place + 1])
         if len(name.text or "") > 1 and name.text.isalpha() and argument.tag.endswith(("}mi", "}mn")):

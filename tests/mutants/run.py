@@ -166,7 +166,7 @@ def report(outcomes: dict[Mutant, str]) -> None:
               f"{equivalent} more are equivalent.")  # fmt: skip
 
 
-def judged(
+def outcomes_of_portion(
     number: int, chosen: Mapping[Mutant, Sequence[Sequence[str]]], known: Mapping, jobs: int, executed: Executed
 ) -> Iterator[tuple[Mutant, str, str]]:
     """Run a portion of their tests for mutants that survive and have not met these files; yield killers and digests."""
@@ -202,7 +202,7 @@ def main() -> None:
     executed = measure(given.results.parent / "executed", given.jobs)
     chosen = {mutant: executed.by(mutant.function) for mutant in islice(draw(seed), given.count)}
     for number in range(1, max(map(len, chosen.values()), default=0) + 1):  # survivors meet further tests
-        for mutant, found, digest in judged(number, chosen, known, given.jobs, executed):
+        for mutant, found, digest in outcomes_of_portion(number, chosen, known, given.jobs, executed):
             own = mutant.digest()
             known[own] = (found, [*known.get(own, ("", []))[1], digest])
             print(f"{number}: {f'killed by {found}' if found else 'SURVIVES'}: {mutant}", flush=True)
