@@ -122,11 +122,12 @@ def title_of(program: Program) -> str:
     Returns
     -------
     str
-        Scene, number of operations, method of the solve and range.
+        Scene, number of operations, method of the solve, range, and the last time for which functions have values.
     """
     scene = f" of {program.scene}" if program.scene else ""
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
-    return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}"
+    end = "" if program.law_end is None else f", until t = {float(program.law_end):.10g}"
+    return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}{end}"
 
 
 def title_of_model(model: "Model") -> str:
@@ -141,8 +142,7 @@ def title_of_model(model: "Model") -> str:
     str
         That of its motion, and the last time for which tables and special functions have values.
     """
-    title = title_of(model.motion)
-    return title if model.law_end is None else f"{title}, until t = {float(model.law_end):.10g}"
+    return title_of(replace(model.motion, law_end=model.law_end))
 
 
 def range_of(program: Program) -> str:

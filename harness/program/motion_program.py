@@ -23,7 +23,7 @@ from ..expression.functions import FUNCTIONS
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read, require
 from ..language import translatable
-from ..schema import Names
+from ..schema import Names, NumberText
 from ..structs import computed, entry, structured
 from .request import Solve
 
@@ -97,6 +97,10 @@ class Program:
     outputs: Mapping[str, Atom] = entry("Name or number of each quantity that is computed.", minProperties=1)
     redundant: tuple[str, ...] = entry(
         "Multipliers that were put to zero, for their constraints follow from the others near the initial state.", ()
+    )
+    law_end: NumberText | None = entry(
+        "The last time for which special functions, or tables of servo-constraints, give values; null without any.",
+        None,
     )
 
     SHAPE: ClassVar = {"type": "object"}  # within other documents, where it is a document of its own

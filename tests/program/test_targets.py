@@ -46,3 +46,12 @@ def test_the_last_time_of_a_table_was_not_in_the_code_that_continues_it(name, tm
     assert float(model.law_end) == POINTS[-1][0]
     written = target(name).write_model(model, "lift")
     assert f"t = {POINTS[-1][0]:.10g}" in (written if isinstance(written, str) else written["lift.h"])
+
+
+@pytest.mark.parametrize("name", ["javascript", "python"])
+@pytest.mark.parametrize(("force", "ends"), [("bessel_j(0, t)", True), ("bessel_j(0, 1)", False)])
+def test_the_last_time_of_a_special_function_was_not_in_code_of_the_motion(name, force, ends, write_scene):
+    scene = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 7/2])$""")
+    assert ("t = 3.5" in MotionProgram(scene, Request(None), Limits()).written(name)) is ends
