@@ -94,17 +94,26 @@ def time_dependence(program: Program, start: float, end: float, tables: Sequence
     -------
     TimeDependence
     """
-    expressions = _time_expressions(program, tables)
+    expressions = time_expressions(program, tables)
     if not start < end or not expressions.outputs:
         return TimeDependence()
     knots = sorted({t for table in tables for t in map(float, table.knots) if start < t < end})
     return _Scan(TimeFunction(expressions, tables), start, end, np.array(knots)).result()
 
 
-def _time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
+def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:
     """Return the expressions of time alone that other expressions of a program use.
 
-    The inputs of the result are ``t`` and those of the tables.
+    Parameters
+    ----------
+    program : Program
+    tables : sequence of Table
+        Tables whose polynomials the program takes.
+
+    Returns
+    -------
+    Program
+        Its inputs are ``t`` and those of the tables.
     """
     inputs = ("t", *(name for table in tables for name in table.inputs))
     known, remaining, used = set(inputs), [], {}

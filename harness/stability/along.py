@@ -7,7 +7,8 @@ The basis N of the tangent space moves along by
 for which N^T A N = 1, and turns N as little as the mass metric allows. H depends on the space alone, not on the basis.
 The deviations x' = A(t) x have the state-transition matrix Phi(t), x(t) = Phi(t) x(t0). Both equations are linear.
 Collocation at nine equidistant nodes of a block solves them, of order ten (Hairer, Norsett & Wanner, Solving Ordinary
-Differential Equations I, section II.7). The error is estimated by every second node, of order six.
+Differential Equations I, section II.7). The error is estimated by every second node, of order six, and by functions of
+the time between them.
 
 If the motion and its equations have the period T, the eigenvalues of Phi(T) are the characteristic multipliers: the
 motion is asymptotically stable if all lie inside the unit circle, and unstable if one lies outside (Floquet; Lyapunov;
@@ -54,6 +55,7 @@ from .linearization import (
 )
 from .repetition import equations_repeat
 from .request import AlongRequest
+from .resolution import unresolved
 from .tangent import Tangent
 
 NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
@@ -299,16 +301,27 @@ class _Nodes:
         self._problem, self._equations = problem, equations
         coordinates_alone = replace(problem, observe=("trajectory",), outputs=None, controls=None)
         motion = simulated(coordinates_alone, SimulationRequest(until=request.until, samples=steps + 1))
-        states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
+        self._states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
         self.times = np.asarray(motion.times, dtype=float)
-        self.points = [motion_at(problem, equations, t, state) for t, state in zip(self.times, states.T, strict=True)]
-        nodes = [_Node(point, *tangent_at(problem, equations, point)) for point in self.points]
+
+    @cached_property
+    def points(self) -> list[Point]:
+        """The motion at each node."""
+        at = zip(self.times, self._states.T, strict=True)
+        return [motion_at(self._problem, self._equations, t, state) for t, state in at]
+
+    @cached_property
+    def nodes(self) -> list[_Node]:
+        """The nodes, with a basis that moves along."""
+        nodes = [_Node(point, *tangent_at(self._problem, self._equations, point)) for point in self.points]
         bases = _propagated(np.array([node.turning for node in nodes]), self.duration, nodes[0].tangent.basis)
-        self.nodes = [
-            node._replace(tangent=node.tangent.next_to(basis)) for node, basis in zip(nodes, bases, strict=True)
-        ]
-        self.linear = [
-            linearization_of(problem, equations, node.point, float(t), node.here, node.tangent)
+        return [node._replace(tangent=node.tangent.next_to(basis)) for node, basis in zip(nodes, bases, strict=True)]
+
+    @cached_property
+    def linear(self) -> list[Linearization]:
+        """The linear system at each node."""
+        return [
+            linearization_of(self._problem, self._equations, node.point, float(t), node.here, node.tangent)
             for t, node in zip(self.times, self.nodes, strict=True)
         ]
 
@@ -323,8 +336,12 @@ class _Nodes:
 
     @cached_property
     def error(self) -> float:
-        """Relative difference of Phi at the end if every second node is left out."""
-        return self._apart(self._transition(2)[-1])
+        """Relative difference of Phi at the end if every second node is left out.
+
+        Or of functions of the time from polynomials through the nodes, if it is larger.
+        """
+        missed = unresolved(self._equations, self.times, NODES)
+        return missed if missed > CLOSE else max(missed, self._apart(self._transition(2)[-1]))
 
     @cached_property
     def lengths(self) -> Vector:
@@ -376,17 +393,12 @@ class _SwitchedNodes(_Nodes):
         states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
         self.times = np.asarray(motion.times, dtype=float)
         bases = self._bases(states)[::stride]
-        self.times, states = self.times[::stride], states[:, ::stride]
-        for t, state in zip(self.times, states.T, strict=True):
+        self.times, self._states = self.times[::stride], states[:, ::stride]
+        for t, state in zip(self.times, self._states.T, strict=True):
             require_between_switchings(problem, t, state)
-        self.points = [motion_at(problem, equations, t, state) for t, state in zip(self.times, states.T, strict=True)]
         nodes = [_Node(point, *tangent_at(problem, equations, point)) for point in self.points]
         self.nodes = [
             node._replace(tangent=node.tangent.next_to(basis)) for node, basis in zip(nodes, bases, strict=True)
-        ]
-        self.linear = [
-            linearization_of(problem, equations, node.point, float(t), node.here, node.tangent)
-            for t, node in zip(self.times, self.nodes, strict=True)
         ]
         self.transition = self._transitions(motion, stride)
         self.error = self._apart(self._transitions(self._derived(request.until, len(self.times), COARSE), 1)[-1])

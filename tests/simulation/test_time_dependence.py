@@ -12,7 +12,7 @@ from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.request import Solve
 from holonom.simulation import time_dependence as scan
 from holonom.simulation.mode import TOO_OFTEN
-from holonom.simulation.time_dependence import NOT_SMOOTH, TimeDependence, _time_expressions, time_dependence
+from holonom.simulation.time_dependence import NOT_SMOOTH, TimeDependence, time_dependence, time_expressions
 
 T, X = Name("t"), Name("x")
 
@@ -64,10 +64,10 @@ def test_the_time_is_found_at_which_an_expression_ends(expression, end, smooth):
 
 def test_only_the_largest_expressions_of_the_time_alone_are_looked_at():
     expression = of(Operation.ADD, X, of(Operation.MULTIPLY, X, of(Operation.SIN, of(Operation.COS, T))))
-    assert _time_expressions(program(expression)).assignments == (
+    assert time_expressions(program(expression)).assignments == (
         ("of_time[0]", of(Operation.SIN, of(Operation.COS, T))),
     )
-    assert _time_expressions(program(of(Operation.SIN, X))).outputs == {}
+    assert time_expressions(program(of(Operation.SIN, X))).outputs == {}
 
 
 @pytest.mark.parametrize(("faint", "often"), [(1, 10**6), (10**9, 10**6), (10**9, 10**4), (10**9, 3 * 10**7)])
