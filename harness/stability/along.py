@@ -7,8 +7,8 @@ The basis N of the tangent space moves along by
 for which N^T A N = 1, and turns N as little as the mass metric allows. H depends on the space alone, not on the basis.
 The deviations x' = A(t) x have the state-transition matrix Phi(t), x(t) = Phi(t) x(t0). Both equations are linear.
 Collocation at nine equidistant nodes of a block solves them, of order ten (Hairer, Norsett & Wanner, Solving Ordinary
-Differential Equations I, section II.7). The error is estimated by every second node, of order six, and by functions of
-the time between them.
+Differential Equations I, section II.7). The error is estimated by every second node, of order six, by functions of
+the time between them, and by the motion there.
 
 If the motion and its equations have the period T, the eigenvalues of Phi(T) are the characteristic multipliers: the
 motion is asymptotically stable if all lie inside the unit circle, and unstable if one lies outside (Floquet; Lyapunov;
@@ -55,10 +55,12 @@ from .linearization import (
 )
 from .repetition import equations_repeat
 from .request import AlongRequest
-from .resolution import unresolved
+from .resolution import unresolved, unresolved_motion
 from .tangent import Tangent
 
 NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
+PARTS = 7  # of a step between nodes, at whose ends the motion is compared with polynomials
+ALIASED = 1e-3  # relative error of gradients of the equations between the nodes that is no discretisation error
 BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
 FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is computed
 COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives is estimated
@@ -300,9 +302,10 @@ class _Nodes:
     def __init__(self, problem: MotionProblem, equations: LinearEquations, request: AlongRequest, steps: int) -> None:
         self._problem, self._equations = problem, equations
         coordinates_alone = replace(problem, observe=("trajectory",), outputs=None, controls=None)
-        motion = simulated(coordinates_alone, SimulationRequest(until=request.until, samples=steps + 1))
-        self._states = np.array([*motion.coordinates.values(), *motion.velocities.values()])
-        self.times = np.asarray(motion.times, dtype=float)
+        motion = simulated(coordinates_alone, SimulationRequest(until=request.until, samples=PARTS * steps + 1))
+        self._between = np.array([*motion.coordinates.values(), *motion.velocities.values()])
+        self._all_times = np.asarray(motion.times, dtype=float)
+        self.times, self._states = self._all_times[::PARTS], self._between[:, ::PARTS]
 
     @cached_property
     def points(self) -> list[Point]:
@@ -341,6 +344,10 @@ class _Nodes:
         Or of functions of the time from polynomials through the nodes, if it is larger.
         """
         missed = unresolved(self._equations, self.times, NODES)
+        if missed <= CLOSE:
+            motion = self._problem, self._equations, self._all_times, self._between
+            aliased = unresolved_motion(*motion, NODES, PARTS)
+            missed = aliased if aliased > ALIASED else missed
         return missed if missed > CLOSE else max(missed, self._apart(self._transition(2)[-1]))
 
     @cached_property
