@@ -14,9 +14,11 @@ If the velocities jump there as well, the first X- and F- are changed by the imp
 X satisfies the constraints' derivative, J dq/dp = -f_p and its time derivative, from which rounding lets it go.
 """
 
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from copy import copy
 from functools import partial
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -28,7 +30,7 @@ from ..program.heyoka_function import import_heyoka
 from ..program.motion_problem import MotionProblem, Sign
 from ..program.motion_program import Program
 from ..program.precision import read_precision
-from ..program.sign_pattern import problem_in, switching_function
+from ..program.sign_pattern import problem_in, program_with_values, switching_function
 from .branch_points import DOUBLINGS
 from .engines.code import codes_for, worthwhile_code
 from .engines.engine import Step
@@ -41,6 +43,7 @@ from .matrices import start_of
 from .mode import Mode
 from .nominal import Nominal, first_order_changes, nominal_of
 from .recording import SampleBlock
+from .time_dependence import time_dependence
 from .variation import TIME, Variation, no_sensitivity, size_of
 from .variational_equations import VariationalEquations, largest
 
@@ -102,9 +105,12 @@ class _Zero(NamedTuple):
 class _ModeVariation:
     """The variational equations of one mode."""
 
-    def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None) -> None:
+    def __init__(self, mode: Mode, directions: tuple[str, ...], tol: float | None, end: float) -> None:
         self.mode, self.problem, self._directions, self._tol = mode, mode.problem, directions, tol
         self.variation = VariationalEquations(self.problem, directions, mode.matrices)
+        numbers = program_with_values(self.problem, self.variation.program)
+        by_time = time_dependence(numbers, float(self.problem.start["t"]), end, self.problem.tables)
+        self._stops = sorted({*mode.stops, *by_time.stops})
         self._code = codes_for(self.variation.program.operations, DOUBLE)[0]
         self._integrator = self._compiled()
 
@@ -128,10 +134,25 @@ class _ModeVariation:
     def integrate(
         self, start: float, state: Numbers, moves: Numbers, end: float, left: float
     ) -> tuple[list[_Segment], Numbers, Numbers]:
+        """Integrate the derivatives through a part, with steps that end at pulses.
+
+        These are functions of the time, also in the derivatives alone. `left` is the remaining time of the motion at
+        the start of the part.
+        """
+        between = self._stops[bisect_right(self._stops, start) : bisect_left(self._stops, end)]
+        segments: list[_Segment] = []
+        for one, other in pairwise((start, *between, end)):
+            found, state, moves = self._integrate_smooth(one, state, moves, other, left - (one - start))
+            segments += found
+        return segments, state, moves
+
+    def _integrate_smooth(
+        self, start: float, state: Numbers, moves: Numbers, end: float, left: float
+    ) -> tuple[list[_Segment], Numbers, Numbers]:
         """Integrate the derivatives through a part, or its halves if they grow much.
 
-        `left` is the remaining time of the motion at the start of the part. The state and the projected derivatives
-        at its end are returned with it.
+        It is smooth in the time. `left` is as above. The state and the projected derivatives at its end are returned
+        with it.
         """
         (unit, sizes), half = self.variation.units, (start + end) / 2
         scaled, rows = state / sizes, sizes[:, None]
@@ -140,8 +161,8 @@ class _ModeVariation:
         reached, grown = np.split(self._integrator.state.copy(), [len(state)])
         # derivatives, not the state, would decide about steps
         if len(steps) > 1 and start < half < end and np.max(np.abs(grown)) > largest(scaled, reached):
-            first, *there = self.integrate(start, state, moves, half, left)
-            second, *there = self.integrate(half, *there, end, left)
+            first, *there = self._integrate_smooth(start, state, moves, half, left)
+            second, *there = self._integrate_smooth(half, *there, end, left)
             return first + second, *there
 
         def derivatives(times: Numbers) -> Numbers:
@@ -325,6 +346,9 @@ class Sensitivities:
         """
         self._advance()
         found = [self._in_mode(self._of(mode), t, states) for mode, t, states in block.by_mode()]
+        *_, (_, times, states) = block.by_mode()
+        if times[-1] == self._time:
+            self._require_same_motion(states[:, -1])
         self._pieces = [piece for piece in self._pieces if piece.end >= block.times[-1]]
         none = [np.zeros((len(self.directions), len(t))) for _, t, _ in block.by_mode()]
         return self._named({
@@ -369,7 +393,7 @@ class Sensitivities:
 
     def _of(self, mode: Mode) -> _ModeVariation:
         if mode not in self._modes:
-            self._modes[mode] = _ModeVariation(mode, self.directions, self._tol)
+            self._modes[mode] = _ModeVariation(mode, self.directions, self._tol, self._end)
         return self._modes[mode]
 
     def _advance(self) -> None:

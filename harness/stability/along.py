@@ -60,7 +60,7 @@ from .tangent import Tangent
 
 NODES = 8  # steps of a block, whose nodes a polynomial of this degree goes through
 PARTS = 7  # of a step between nodes, at whose ends the motion is compared with polynomials
-ALIASED = 1e-3  # relative error of gradients of the equations between the nodes that is no discretisation error
+ALIASED = 1e-3  # relative error of gradients of the equations, beyond all discretisation errors
 BLOCKS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1024)
 FINEST = 8  # intervals of a motion with switchings, at least, in whose nodes the basis is computed
 COARSE = 1e-11  # second tolerance of a step, by which the error of derivatives is estimated

@@ -552,3 +552,40 @@ def test_a_contact_of_hertz_had_no_derivatives_where_it_begins(start, edge):
     motion = scene.simulate(samples=2, sensitivities=["k"])
     expected = (end(3.001) - end(2.999)) / 0.002
     assert [motion["d(x, k)"][-1], motion["d(dot(x), k)"][-1]] == pytest.approx(expected, rel=1e-5)
+
+
+# ---- pulses of the time ---------------------------------------------------------------------------------------------
+
+STIFFER_FOR_A_WHILE = """system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2,
+  potential_energy = u*x^2/2, forces = [damping = [-dot(x)/5 - max(0, x - {edge})]])$
+s : holonomic_scene(system, control_law = [u = 1/10 + 100*exp(-(200*t - 275/4)^2)], nominal = [x = 1],
+  initial_state = [x = {x}, dot(x) = 0], time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize(("x", "edge"), [(0, 5), (1, 5), (1, "9/10")])
+def test_derivatives_passed_a_pulse_that_steps_of_the_motion_end_before(x, edge):
+    """Below the edge the motion is linear: as x = 1 moves, so do deviations. They missed the pulse by 0.75."""
+    truth = holonom.system(STIFFER_FOR_A_WHILE.format(x=1, edge=5)).simulate(samples=5)
+    found = holonom.system(STIFFER_FOR_A_WHILE.format(x=x, edge=edge)).simulate(samples=5, sensitivities=["x"])
+    if edge == 5:
+        assert found["d(x, x)"] == pytest.approx(truth["x"], abs=1e-12)
+        return
+    step = 1e-4
+    moved = [
+        holonom.system(STIFFER_FOR_A_WHILE.format(x=f"1 + {k}/10^4", edge=edge)).simulate(samples=5)["x"]
+        for k in (-2, -1, 1, 2)
+    ]
+    slopes = (moved[0] - 8 * moved[1] + 8 * moved[2] - moved[3]) / (12 * step)
+    assert found["d(x, x)"] == pytest.approx(slopes, abs=1e-9)
+
+
+@pytest.mark.parametrize("size", [0, 1])
+def test_a_pulse_of_size_zero_has_a_derivative(size):
+    """A kick of 100 exp(-(2000 t - 687)^2) begins a motion at constant speed. Its derivative was 0 if its size was."""
+    text = f"""system : holonomic_system(coordinates = [x], parameters = [p], kinetic_energy = dot(x)^2/2,
+      forces = [kick = [100*p*exp(-(2000*t - 687)^2)]])$
+    s : holonomic_scene(system, parameter_values = [p = {size}], initial_state = [x = 0, dot(x) = 0], nominal = [x = 1],
+      time_span = [0, 1])$"""
+    found = holonom.system(text).simulate(samples=2, sensitivities=["p"])
+    speed = 100 * np.sqrt(np.pi) / 2000
+    assert [found["d(dot(x), p)"][-1], found["d(x, p)"][-1]] == pytest.approx([speed, speed * (1 - 0.3435)], rel=1e-9)
