@@ -1,6 +1,7 @@
 """Every relation of a scene is compared with something: changed, left out, added or beyond its order, it is found."""
 
 import dataclasses
+import re
 from itertools import pairwise
 
 import pytest
@@ -65,6 +66,12 @@ def test_each_relation_changed_left_out_or_added_is_found(checked):
             assert verdict(checked, each, (*before, *after)) is Verdict.DISAGREES, (each.id, i)
         assert verdict(checked, each, (*each.relations, stray)) is Verdict.DISAGREES, each.id
         assert verdict(checked, each, (*each.relations, each.relations[-1])) is Verdict.DISAGREES, each.id
+
+
+def test_conditions_of_free_motion_are_counted_from_one(checked):
+    relations = equation(checked, "free_motion_residual").relations
+    (comparison,) = COMPARISONS["free_motion_residual"](checked, relations)
+    assert [re.findall(r"\d+", str(pair.quantity)) for pair in comparison.pairs] == [["1"]]
 
 
 def test_a_series_that_goes_on_beyond_its_order_is_found(checked):
