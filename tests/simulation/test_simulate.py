@@ -22,7 +22,7 @@ from holonom.simulation.hard_cases import Difficulty, MotionState, _fastest_deca
 from holonom.simulation.matrices import MotionMatrices
 from holonom.simulation.request import EngineName, SimulationRequest, Stabilization
 from holonom.simulation.result import Report, Simulation
-from holonom.simulation.simulate import simulate
+from holonom.simulation.simulate import _EnergyStatistics, simulate
 
 # Test Set for IVP Solvers, car axis, t = 3, as its file R/ex_reference.R prints it: positions, velocities, multipliers.
 CAR_AXIS_POSITIONS = [
@@ -587,3 +587,10 @@ motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span 
 def test_a_longest_step_is_positive_and_finite(step):
     with failing(ErrorKind.NOT_A_STEP, step):
         simulate(problem("pendulum.mac", "swing_scene"), SimulationRequest(max_step=float(step)))
+
+
+def test_changes_of_the_energy_are_counted_from_the_first_sample_of_all():
+    statistics = _EnergyStatistics()
+    statistics.add(np.array([1.0, 3.0]), np.array([0.0, -0.5]))
+    statistics.add(np.array([2.0, 1.5]), np.array([0.3, 0.25]))
+    assert (statistics.largest_change, statistics.error, statistics.last_error) == (2.0, 0.5, 0.25)
