@@ -94,6 +94,16 @@ def test_gradients_are_what_differences_go_to(tree):
         assert abs(found - (around[0] - around[1]) / (2 * step)) < mp.mpf(10) ** -20
 
 
+def test_a_power_is_differentiated_where_its_exponent_changes_in_time():
+    """d/dx of x^y is y x^(y - 1): 1 + 2 t + ... for x = 1 + t^2 and y = 1 + 2 t, (1 + 2 t) x^(2 t)."""
+    taylor, tape = Taylor(2), Tape()
+    place = tape.place(["Power", "x", "y"])
+    known = {"x": (mp.one, mp.zero, mp.one), "y": (mp.one, mp.mpf(2), mp.zero)}
+    values = tape.values(taylor, known)
+    gradient = tape.gradient(taylor, values, {place: (mp.one,)})
+    assert [mp.nstr(each, 20) for each in gradient["x"][:3]] == ["1.0", "2.0", "0.0"]
+
+
 def test_a_square_is_differentiated_where_its_base_is_zero_but_for_rounding():
     """A division by the base made the check of a closed chain's series blind."""
     tape, taylor = Tape(), Taylor(3)
