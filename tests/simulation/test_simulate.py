@@ -592,5 +592,5 @@ def test_a_longest_step_is_positive_and_finite(step):
 def test_changes_of_the_energy_are_counted_from_the_first_sample_of_all():
     statistics = _EnergyStatistics()
     statistics.add(np.array([1.0, 3.0]), np.array([0.0, -0.5]))
-    statistics.add(np.array([2.0, 1.5]), np.array([0.3, 0.25]))
-    assert (statistics.largest_change, statistics.error, statistics.last_error) == (2.0, 0.5, 0.25)
+    statistics.add(np.array([2.0, 4.0]), np.array([0.3, 0.25]))
+    assert (statistics.largest_change, statistics.error, statistics.last_error) == (3.0, 0.5, 0.25)
