@@ -197,8 +197,11 @@ AT_ITS_NODES = {
 }
 
 
-@pytest.mark.parametrize("law", AT_ITS_NODES)
-@pytest.mark.parametrize("by_control", [True, False])
+FIRST, *OTHERS = AT_ITS_NODES
+
+
+@pytest.mark.parametrize("law", [FIRST, *(pytest.param(law, marks=pytest.mark.long) for law in OTHERS)])
+@pytest.mark.parametrize("by_control", [True, pytest.param(False, marks=pytest.mark.long)])
 def test_functions_of_the_time_were_not_met_between_the_nodes(law, by_control):
     """They are smooth at all of 17 nodes, and Phi had errors up to 0.5 with an estimate of 3e-10."""
     given = {"stiffness": "u", "law": law} if by_control else {"stiffness": f"u*({law})", "law": "1"}
@@ -222,7 +225,7 @@ ROTOR = """system : holonomic_system(coordinates = [x, {names}], {constraints} k
 s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0, {state}], nominal = [x = 1], time_span = [0, 1])$"""
 
 
-@pytest.mark.parametrize("rotor", ROTORS)
+@pytest.mark.parametrize("rotor", [pytest.param("an angle", marks=pytest.mark.long), "on a circle"])
 def test_a_rotor_at_the_same_place_at_all_nodes_was_at_rest(rotor):
     """It turns 32 times: x'' = -(1 + cos(64 pi t)) x. The error of Phi was 0.56, its estimate 5e-9."""
     names, cosine, constraints, state = ROTORS[rotor]

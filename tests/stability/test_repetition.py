@@ -44,7 +44,7 @@ def test_motions_have_multipliers_if_the_equations_repeat_for_ever(law, stiffnes
     assert (found.floquet is not None) is expected
 
 
-@pytest.mark.parametrize("digits", [3, 12])
+@pytest.mark.parametrize("digits", [pytest.param(3, marks=pytest.mark.long), 12])
 def test_a_period_has_the_digits_that_are_given(digits):
     scene = holonom.system(SCENE.format(law="4 + sin(t)", stiffness="u"))
     found = scene.linearize_along(until=f"{2 * np.pi:.{digits}f}", samples=2)
