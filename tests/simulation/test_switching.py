@@ -343,7 +343,7 @@ def test_a_mass_rests_at_the_bottom_of_a_kink():
         # on the boundary of two halves of the time span, with a wrong number and exit status 1
         (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1", ()),
         # infinitely many switchings before t = 1, which were passed with a wrong velocity and exit status 0
-        (lambda: mass(force="-10*signum(sin(1/(1 - t)))", end="3"), "0.99997", ()),
+        pytest.param(lambda: mass(force="-10*signum(sin(1/(1 - t)))", end="3"), "0.99997", (), marks=pytest.mark.long),
     ],
 )
 def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, time, facts):
