@@ -16,6 +16,7 @@ PUNCTUATION = {";", "!"}  # characters to latex2mathml
 SIGNS = {"+", "\u2212"}
 BEFORE_A_PREFIX = {"=", "(", "[", ","}  # what a sign that belongs to one term alone stands after
 ROWS = ("}math", "}mrow", "}mstyle", "}mtd")
+WITH_SCRIPTS = ("}msub", "}msubsup", "}msup")
 UNKNOWN_TO_CORE = ("columnspacing", "rowspacing", "columnalign", "fence")
 
 ElementTree.register_namespace("", NAMESPACE)
@@ -101,7 +102,8 @@ def _to_core(element: Element) -> None:
 def _set_functions_apart(row: Element) -> None:
     """Insert a thin space between a function and an argument without brackets."""
     for place in reversed(range(1, len(row) if row.tag.endswith(ROWS) else 1)):
-        name, argument = (_first_part(each) for each in row[place - 1 : place + 1])
+        before, argument = row[place - 1], _first_part(row[place])
+        name = before[0] if before.tag.endswith(WITH_SCRIPTS) else before
         if len(name.text or "") > 1 and name.text.isalpha() and argument.tag.endswith(("}mi", "}mn")):
             row.insert(place, Element(f"{{{NAMESPACE}}}mspace", width="0.167em"))
 

@@ -70,6 +70,7 @@ def test_what_is_not_well_formed_is_refused():
 @pytest.mark.parametrize(
     ("latex", "spaces"),
     [(r"\sin\varphi", 1), (r"\sin^2\dot{x}", 1), (r"\operatorname{arsinh}\frac{x}{2}", 1), (r"\ln 2", 1),
+     (r"\frac{\sin x}{2} y", 1), (r"\sqrt{\sin x} y", 1),
      (r"\sin(x)", 0), (r"\ln|x|", 0), (r"\mathrm{residual}_1 x", 0), (r"\psi_0 x", 0)],
 )  # fmt: skip
 def test_the_name_of_a_function_has_a_space_before_an_argument_without_brackets(latex, spaces):
