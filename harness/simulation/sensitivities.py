@@ -345,12 +345,12 @@ class Sensitivities:
         dict of str to ndarray, shape (k,)
         """
         self._advance()
-        found = [self._in_mode(self._of(mode), t, states) for mode, t, states in block.by_mode()]
-        *_, (_, times, states) = block.by_mode()
-        if times[-1] == self._time:
-            self._require_same_motion(states[:, -1])
+        parts = list(block.by_mode())
+        found = [self._in_mode(self._of(mode), t, states) for mode, t, states in parts]
+        if block.times[-1] == self._time:
+            self._require_same_motion(block.states[:, -1])
         self._pieces = [piece for piece in self._pieces if piece.end >= block.times[-1]]
-        none = [np.zeros((len(self.directions), len(t))) for _, t, _ in block.by_mode()]
+        none = [np.zeros((len(self.directions), len(t))) for _, t, _ in parts]
         return self._named({
             name: np.concatenate([part.get(name, zero) for part, zero in zip(found, none, strict=True)], axis=1)
             for name in found[0] | found[-1]
