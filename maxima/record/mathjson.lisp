@@ -15,7 +15,7 @@
     (%asec . "Arcsec") (%acsc . "Arccsc") (%acot . "Arccot")
     (%asech . "Arsech") (%acsch . "Arcsch") (%acoth . "Arcoth") (%erf . "Erf") (%erfc . "Erfc")
     (%bessel_j . "BesselJ") (%bessel_y . "BesselY") (%bessel_i . "BesselI") (%bessel_k . "BesselK")
-    (%gamma . "Gamma") ($zeta . "Zeta") (%zeta . "Zeta")
+    (%gamma . "Gamma") (%zeta . "Zeta")
     (%airy_ai . "AiryAi") (%airy_bi . "AiryBi") (%airy_dai . "AiryAiPrime") (%airy_dbi . "AiryBiPrime")
     (%jacobi_sn . "JacobiSn") (%jacobi_cn . "JacobiCn") (%jacobi_dn . "JacobiDn")))
 
