@@ -341,7 +341,8 @@ class _Nodes:
     def error(self) -> float:
         """Relative difference of Phi at the end if every second node is left out.
 
-        Or of functions of the time from polynomials through the nodes, if it is larger.
+        Or of functions of the time, or gradients of the equations, from polynomials through the nodes, if those are
+        not resolved.
         """
         missed = unresolved(self._equations, self.times, NODES)
         if missed <= CLOSE:
