@@ -3,9 +3,10 @@
 Operations on numbers are done when the program is written.
 """
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
+from itertools import cycle
 
 from .motion_program import Call, Constant, Expression, Name, Operation, Program, names_in
 
@@ -250,3 +251,37 @@ def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Exp
         isinstance(each, Call) and each.names <= known.keys() and _substituted(each, known) == ZERO
         for each in arguments
     )
+
+
+def with_factors(program: Program, factors: Sequence[str]) -> Program:
+    """Return a program with a factor at each name, rounded number and operation.
+
+    If the factors are random and near one, they do as rounding errors.
+
+    Parameters
+    ----------
+    program : Program
+    factors : sequence of str
+        Names of further inputs, which are used in turn.
+
+    Returns
+    -------
+    Program
+    """
+    names = cycle(factors)
+
+    def times_factor(expression: Expression) -> Expression:
+        return Call(Operation.MULTIPLY, (expression, Name(next(names))))
+
+    def written(expression: Expression) -> Expression:
+        match expression:
+            case Call(Operation.POWER, (base, Fraction() as exponent)):
+                return times_factor(Call(Operation.POWER, (written(base), exponent)))
+            case Call(operation, arguments):
+                return times_factor(Call(operation, tuple(map(written, arguments))))
+            case Fraction() if Fraction(float(expression)) == expression:
+                return expression
+        return times_factor(expression)
+
+    assignments = tuple((name, written(each)) for name, each in program.assignments)
+    return replace(program, inputs=(*program.inputs, *factors), assignments=assignments)

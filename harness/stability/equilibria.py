@@ -57,12 +57,11 @@ DEPENDENT = 1e-12  # singular values of a step's equations, relative to the larg
 ROUNDING = 1e-12  # of a size
 NEARLY_SINGULAR = 1e-4  # singular values of the constraints, where Newton's method finds places to half the digits
 SAME = 1e-6  # distance in terms of the sizes below which two solutions are one
-UNRESOLVED = 4e-3  # the same if one is not isolated
+UNRESOLVED = 4e-3  # the same if one is not isolated: forces of sixth order vanish to rounding errors nearer by
 MULTIPLE = 1 / 8  # forces left near a multiple zero, relative to those at this distance
 LEAST_STIFFNESS = 1e-7  # relative to the changes of all forces: what is smaller is not decided
-UNCERTAIN = 16  # Newton steps, of the largest force left, by which a place is uncertain
-BESIDE = 1e-9  # relative distance at which other rounding errors are met
-FARTHEST = 1e-4  # such a step in terms of the sizes: forces of fourth order vanish to rounding errors nearer by
+UNCERTAIN = 16  # largest errors met, by which a place or a stiffness is uncertain
+REPETITIONS = 16  # with other rounding errors each
 PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to first order
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
@@ -209,12 +208,12 @@ def find_equilibria(
     search = _Search(problem, equations, list(values.values()))
     same = search.equivalence(np.random.default_rng(seed))
     rational = _rational(problem, equations, controls)
-    solutions = _all_solutions(problem, equations, values | rational)
+    turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
+    solutions = _all_solutions(problem, equations, values | rational, turns)
     given = [[each.coordinates[name] for name in equations.coordinates] for each in near]
     given += [] if solutions is None else solutions.approximate(equations.coordinates)
     points = search.starts(starts, np.random.default_rng(seed), given)
     found, *left_out = search.equilibria(points, same)
-    turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
     names = turns, tuple(reversals)
     first = problem.scene, values, {u: str(x) for u, x in rational.items()}, starts
     if solutions is None:
@@ -226,11 +225,11 @@ def find_equilibria(
 
 
 def _all_solutions(
-    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float | Fraction]
+    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float | Fraction], turns: Sequence[str]
 ) -> "RealSolutions | None":
     from .real_solutions import solve_exactly
 
-    return solve_exactly(equations, problem.independent, [Fraction(str(x)) for x in controls.values()])
+    return solve_exactly(equations, problem.independent, [Fraction(str(x)) for x in controls.values()], turns)
 
 
 def _rational(problem: MotionProblem, equations: LinearEquations, given: Mapping[str, float]) -> dict[str, Fraction]:
@@ -464,9 +463,9 @@ class _Search:
         terms = np.abs(tangent.basis).T @ np.abs(changes) @ np.abs(tangent.basis)
         bound = np.linalg.norm(terms, 2) if terms.size else 0.0
         stiffness = tangent.basis.T @ changes @ tangent.basis
-        return stiffness, float(bound), self._error(q, multipliers, tangent.basis, stiffness)
+        return stiffness, float(bound), self._error(q, multipliers, tangent, stiffness)
 
-    def _error(self, q: Vector, multipliers: Vector, basis: Matrix, stiffness: Matrix) -> float:
+    def _error(self, q: Vector, multipliers: Vector, tangent: Tangent, stiffness: Matrix) -> float:
         """Return the error of the stiffness.
 
         It is the change within the uncertainty of the place, and rounding errors.
@@ -476,20 +475,21 @@ class _Search:
         """
         if not stiffness.size:
             return 0.0
+        basis = tangent.basis
         rows, values, columns = np.linalg.svd(stiffness)
         directions = basis @ columns.T
-        lengths = np.max(np.abs(directions) / self._sizes[:, None], axis=0)
-        directions /= lengths
-        beside = np.linspace(-BESIDE, BESIDE, 9) * np.max(np.abs(q) / self._sizes)
-        moved = np.concatenate([directions * step for step in beside], axis=1)
-        forces = np.max(np.abs(self._near(q, multipliers, moved, "equation") @ basis @ rows), axis=0)
-        steps = np.minimum(UNCERTAIN * forces * lengths / or_one(values), FARTHEST)
-        near, far = (
-            basis.T @ self._near(q, multipliers, np.concatenate([moved, -moved], axis=1), "equation_by_q") @ basis
-            for moved in (directions * steps, directions)
-        )
-        rounding = UNCERTAIN * np.finfo(float).eps * np.linalg.norm(far, 2, axis=(1, 2))
-        return float(np.max(np.linalg.norm(near - stiffness, 2, axis=(1, 2))) + np.max(rounding))
+        lengths = np.max(np.abs(directions) / self._sizes_at(q)[:, None], axis=0)
+        many = (np.repeat(each[:, None], REPETITIONS, axis=1) for each in (q, multipliers))
+        rough = self._equations.at(self._point(*many), self._independent, np.random.default_rng(0))
+        changes = np.moveaxis(rough["equation_by_q"], -1, 0)
+        off = np.einsum("kij,jk->ik", changes, tangent.shortest(rough["constraint"]))
+        forces = np.max(np.abs(rows.T @ basis.T @ (rough["equation"] - off)), axis=1)
+        directions *= np.minimum(UNCERTAIN * forces / or_one(values), UNRESOLVED / lengths)
+        moved = np.concatenate([directions, -directions], axis=1)
+        near = basis.T @ self._near(q, multipliers, moved, "equation_by_q") @ basis
+        both = (each - stiffness for each in (near, basis.T @ changes @ basis))
+        moving, rounding = (np.max(np.linalg.norm(each, 2, axis=(1, 2))) for each in both)
+        return float(moving + UNCERTAIN * rounding)
 
     def _is_zero_nearby(self, found: "_Solution") -> bool:
         """Return True if forces in directions without stiffness vanish nearby.
@@ -502,7 +502,7 @@ class _Search:
         rows, values, columns = np.linalg.svd(found.stiffness)
         flat = values <= found.least
         directions, pushed = basis @ columns.T[:, flat], basis @ rows[:, flat]
-        directions *= UNRESOLVED / np.max(np.abs(directions) / self._sizes[:, None], axis=0)
+        directions *= UNRESOLVED / np.max(np.abs(directions) / self._sizes_at(found.q)[:, None], axis=0)
         moved = np.concatenate([np.zeros_like(directions), directions, -directions], axis=1)
         forces = np.abs(self._near(found.q, found.multipliers, moved, "equation") @ pushed).reshape(3, flat.sum(), -1)
         left, *apart = np.diagonal(forces, axis1=1, axis2=2)
@@ -592,8 +592,10 @@ class _Search:
         return None
 
     def _close(self, one: Vector, other: Vector, same: Equivalence, distance: float = SAME) -> bool:
-        sizes = np.maximum(self._sizes, np.maximum(np.abs(one), np.abs(other)))
-        return bool(np.all(np.abs(same.apart(one, other)) <= distance * sizes))
+        return bool(np.all(np.abs(same.apart(one, other)) <= distance * self._sizes_at(one, other)))
+
+    def _sizes_at(self, *places: Vector) -> Vector:
+        return np.max(np.abs([self._sizes, *places]), axis=0)
 
     def _at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
         return self._equations.at(self._point(q, multipliers), self._independent)

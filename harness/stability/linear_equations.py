@@ -21,6 +21,7 @@ from ..formats import Document, read
 from ..program.motion_program import Program, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
+from ..program.rewriting import with_factors
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
 from ..schema import Names
@@ -30,6 +31,7 @@ from ..structs import entry
 
 ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
+FACTORS = 61  # different rounding errors at one point
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,10 @@ class LinearEquations:
     @cached_property
     def _evaluate(self) -> NumpyFunction:
         return NumpyFunction(self.program)
+
+    @cached_property
+    def _evaluate_roughly(self) -> NumpyFunction:
+        return NumpyFunction(with_factors(self.program, [f"factor[{k}]" for k in range(FACTORS)]))
 
     @cached_property
     def _places(self) -> list[tuple[str, tuple[int, ...]]]:
@@ -109,7 +115,9 @@ class LinearEquations:
             raise HolonomError(ErrorKind.NO_LAW)
         return self._law(np.asarray(t))
 
-    def at(self, point: "Point", independent: Sequence[int]) -> Mapping[str, Matrix]:
+    def at(
+        self, point: "Point", independent: Sequence[int], random: np.random.Generator | None = None
+    ) -> Mapping[str, Matrix]:
         """Evaluate the equations and their gradients.
 
         Parameters
@@ -118,6 +126,8 @@ class LinearEquations:
             Or k of them, with a last axis more, which all results then have.
         independent : sequence of int
             The constraints that are looked at, g of them, counted from 0.
+        random : Generator or None
+            If given, rounding errors are random, others at each point.
 
         Returns
         -------
@@ -137,7 +147,12 @@ class LinearEquations:
         for row, size in zip(ROWS, (n, g, g, g, own), strict=True):
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
-        values = self._evaluate([point.t, *np.concatenate(self._inputs(point))])
+        inputs = [point.t, *np.concatenate(self._inputs(point))]
+        if random is None:
+            values = self._evaluate(inputs)
+        else:
+            errors = np.finfo(float).eps * random.uniform(-1, 1, (FACTORS, *points))
+            values = self._evaluate_roughly([*inputs, *(1 + errors)])
         for (array, place), value in zip(self._places, values, strict=True):
             found[array][place] = value
         of_motion = ("equation", "A_rate", "output")

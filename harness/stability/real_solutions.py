@@ -1,8 +1,8 @@
 """Exact number and values of equilibria of small polynomial equations.
 
-The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. A coordinate that occurs in
-its sine and cosine alone is replaced by these two, with c^2 + s^2 = 1. Numbers are exact, a control not known to be
-rational is the decimal number that is written. From a Groebner basis over the rational numbers follow:
+The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. An angle, which whole
+turns do not change, is replaced by its sine and cosine, with c^2 + s^2 = 1. Numbers are exact, a control not known to
+be rational is the decimal number that is written. From a Groebner basis over the rational numbers follow:
 
 - There are finitely many complex solutions if and only if a power of each unknown is a leading monomial (Cox, Little &
   O'Shea, Ideals, Varieties, and Algorithms, section 5.3, theorem 6).
@@ -170,7 +170,7 @@ def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
 
 
 def solve_exactly(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction], turns: Sequence[str]
 ) -> RealSolutions | None:
     """Count the states at rest for constant controls.
 
@@ -182,6 +182,8 @@ def solve_exactly(
         Indices of independent constraints, counted from 0. The multipliers of the others are zero.
     controls : sequence of Fraction
         Constant values, in the order of the equations.
+    turns : sequence of str
+        Coordinates that whole turns do not change.
 
     Returns
     -------
@@ -190,7 +192,7 @@ def solve_exactly(
         constraints taken for independent are not known to be so at all states: others have other solutions there.
     """
     others = [beta for beta in range(len(equations.multipliers)) if beta not in independent]
-    rest, constraints, gradients = _polynomials(equations, independent, controls)
+    rest, constraints, gradients = _polynomials(equations, independent, controls, turns)
     polynomials = [*rest, *constraints]
     if not polynomials or not _are_small(polynomials):
         return None
@@ -278,7 +280,7 @@ def _minors(rows: Sequence[Sequence[PolyElement]], ring: PolyRing) -> list[PolyE
 
 
 def _polynomials(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction]
+    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction], turns: Sequence[str]
 ) -> tuple[list[Any], list[Any], list[list[Any]]]:
     """Return r and f at rest, and the gradients of f.
 
@@ -289,7 +291,7 @@ def _polynomials(
     constraints = [f"constraint[{beta}]" for beta in range(1, g + 1)]
     gradients = [[f"constraint_by_q[{beta},{k}]" for k in range(1, n + 1)] for beta in range(1, g + 1)]
     program = computing(equations.program, {*forces, *constraints, *chain(*gradients)})
-    angles = _angles(program, equations.coordinates)
+    angles = _angles(program, turns)
     plain = [
         *(name for name in equations.coordinates if name not in angles),
         *(equations.multipliers[k] for k in independent),

@@ -45,6 +45,20 @@ def test_states_of_one_value_are_starts_at_the_next():
     assert [len(found) for found in hoop.branches("u", [4.0, 9.0], starts=2)] == [2, 2]
 
 
+def test_a_fold_is_not_called_stable():
+    """Of V = x^4/4 - 3*x^2/2 + u*x at u = -2, where the branches -1 +- sqrt(h/3) meet."""
+    cusp = holonom.system(
+        """system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2,
+          potential_energy = x^4/4 - 3*x^2/2 + u*x)$
+        s : holonomic_scene(system, control_law = [u = 0], initial_state = [x = 1/10, dot(x) = 0])$"""
+    )
+    found = cusp.branches("u", [-2.0000001, -2.0]).at[1]
+    fold, minimum = sorted(found, key=lambda each: each.coordinates["x"])
+    assert (fold.coordinates["x"], fold.stability, fold.isolated) == (pytest.approx(-1), Stability.UNDECIDED, False)
+    assert (minimum.coordinates["x"], minimum.stability, minimum.isolated) == (pytest.approx(2), Stability.STABLE, True)
+    assert not found.complete
+
+
 def test_a_row_for_each_state(fork):
     table = fork.to_pandas()
     assert list(table.columns) == ["u", "phi", "stability"]
