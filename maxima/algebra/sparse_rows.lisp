@@ -21,6 +21,16 @@
   (let ((k 0))
     (mlist-of (mapcan #'(lambda (row) (if (member (incf k) (cdr row) :key #'second) nil (list k))) (cdr rows)))))
 
+(defun $positive_diagonal_p (rows)
+  "Whether each row of numbers has one entry, on the diagonal and positive."
+  (let ((k 0))
+    (every #'(lambda (row)
+               (incf k)
+               (and (cdr row) (null (cddr row))
+                    (destructuring-bind (column value) (cdadr row)
+                      (and (eql column k) (plusp (rational-of value))))))
+           (cdr rows))))
+
 (defun $bordered_rows (rows-of-a rows-of-j)
   (let ((borders (borders-of rows-of-j (length (cdr rows-of-a)))) (s 0))
     (mlist-of (append (mapcar #'(lambda (row) (append row (aref borders (incf s)))) (cdr rows-of-a))
