@@ -54,10 +54,22 @@
   (flet ((spelt (item) (if (stringp item) (maybe-invert-string-case item) item)))
     (error 'unreadable-statement :text (apply #'format nil control (mapcar #'spelt arguments)))))
 
-;; A scene that was copied out of the library's folder, or is read by another installation, means this library.
+;; A scene that was copied out of the library's folder, or is read by another installation, means this library. Where it
+;; is loaded, as in an image, its list of files is not read again.
 (let ((load-file (symbol-function '$load)))
   (defun $load (file)
-    (funcall load-file (if (library-not-there-p file) "holonom.mac" file))))
+    (let ((file (if (library-not-there-p file) "holonom.mac" file)))
+      (if (loaded-library-p file)
+          (setf (symbol-value '*asked-for*) t)
+          (funcall load-file file)))))
+
+(defun loaded-library-p (file)
+  (let ((loaded (and (boundp '*loaded-from*) (cdar (symbol-value '*loaded-from*)))))
+    (and loaded
+         (stringp file)
+         (or (equal file "holonom.mac")
+             (and (probe-file file)
+                  (equal (namestring (truename file)) (concatenate 'string loaded "holonom.mac")))))))
 
 (defun library-not-there-p (file)
   (and (stringp file)

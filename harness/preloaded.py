@@ -126,7 +126,8 @@ def _own_folder() -> Path:
 
 def _name(maxima: str, library: Path, environment: frozenset[tuple[str, str]]) -> str:
     program = Path(maxima).resolve()
-    known = [program, program.stat().st_size, program.stat().st_mtime_ns, library, sorted(environment)]
+    passed = sorted((each, value) for each, value in environment if each != "PATH")  # Maxima has been found by it
+    known = [program, program.stat().st_size, program.stat().st_mtime_ns, library, passed]
     library_files = sorted(file for file in library.rglob("*") if file.suffix in (".mac", ".lisp"))
     texts = [Path(__file__), PRELOAD, *JOBS, *library_files]
     return sha256(b"\0".join([repr(known).encode(), *(each.read_bytes() for each in texts)])).hexdigest()

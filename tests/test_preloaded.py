@@ -150,6 +150,13 @@ def test_oldest_images_are_removed_when_there_are_too_many(tmp_path, monkeypatch
     assert sorted(each.name for each in tmp_path.glob("*.image")) == ["2.image", "3.image", "4.image"]
 
 
+def test_image_serves_shells_with_other_search_paths_and_no_other_maxima(made):
+    maxima, library, _ = asked()
+    assert preloaded.preloaded_image(maxima, library, frozenset({("PATH", "/another:/usr/bin:/bin")})) == made
+    other = preloaded._name(maxima, library, frozenset({("PATH", "/usr/bin"), ("MAXIMA_PREFIX", "/another")}))
+    assert f"{other}.image" != made.name
+
+
 @pytest.mark.long
 def test_another_library_has_another_image(made, tmp_path):
     second = image(shutil.copytree(maxima.LIBRARY, tmp_path / "library"))
