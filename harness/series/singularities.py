@@ -314,7 +314,7 @@ def _refined(zero: _Zero, series: Sequence[Sequence[mpmath.mpf]], t0: mpmath.mpf
         shorter = [row[: int(len(row) * SHORTER)] for row in series]
         place, other = (_multiple_zero(_in_digits(zero.function, rows, t0), zero.place) for rows in (series, shorter))
         circle = CIRCLE * abs(zero.place)
-        if place is None or other is None or max(abs(place - zero.place), abs(other - zero.place)) > circle:
+        if place is None or other is None or abs(place - zero.place) > circle:
             return _Refined(zero.place, float(circle))
         return _Refined(complex(place), float(max(SLOWEST * abs(place - other), CONVERGED * abs(place))))
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 import mpmath
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 
 import holonom
 from holonom.program.motion_program import Operation
@@ -229,3 +229,15 @@ def test_powers_go_on_into_the_complex_plane(exponent):
     for arithmetic, number in ((COMPLEX, complex), (MPMATH, mpmath.mpmathify)):
         assert complex(arithmetic.power(number(z), exponent)) == pytest.approx(z ** float(exponent), rel=1e-14)
         assert complex(arithmetic.number(exponent)) == pytest.approx(float(exponent), rel=1e-15)
+
+
+def test_the_error_of_a_logarithmic_singularity_follows_from_a_shorter_series():
+    """x'' = -x^2 - x + 1 - 4/(x + 2) reaches x = -2 at -T, T by the energy. Zeros of the series converge slowly."""
+
+    def work(x):
+        return -(x**3) / 3 - x**2 / 2 + x - 4 * np.log(x + 2)
+
+    exact, _ = quad(lambda x: 1 / np.sqrt(1 + 2 * (work(x) - work(2))), -2, 2)
+    found = radius(ONE.format(force="-x^2 - x + 1 - 4/(x + 2)", x=2, v=1), order=60)
+    assert found.estimate == pytest.approx(exact, abs=found.uncertainty)
+    assert 0 < found.uncertainty < 0.01 * exact
