@@ -3,6 +3,7 @@
 import difflib
 import json
 import re
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -82,6 +83,13 @@ def agreeing(texts: list[tuple[int, str]], directory: Path) -> set[int]:
 
 def test_finds_the_misprints_and_no_others(printed_equations):
     assert [(e.number, e.name) for e in printed_equations if not e.agrees] == MISPRINTS
+
+
+def test_the_table_of_the_prompt_has_a_row_for_each_equation(printed_equations):
+    command = ["maxima", "--very-quiet", "--init=/dev/null", f"--batch={PRINTED}"]
+    text = subprocess.run(command, capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL).stdout
+    rows = [(e.number, e.name, "agrees" if e.agrees else "differs") for e in printed_equations]
+    assert re.findall(r"^(?:\((\w+)\))? +(\S.*?) +(agrees|differs)$", text, re.MULTILINE) == rows
 
 
 def test_each_misprint_is_the_slip_that_a_reader_of_the_print_sees(printed_equations):

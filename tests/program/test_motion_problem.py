@@ -35,9 +35,10 @@ def test_a_start_has_numbers_for_all_or_there_is_none(values, start, write_scene
     file = write_scene(f"""load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], parameters = [l], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   constraints = [x^2 + y^2 - l^2])$
-swing : holonomic_scene(system, initial_state = [x = 0, y = -l, dot(x) = 1], parameter_values = [{values}])$""")
+swing : holonomic_scene(system, initial_state = [x = 0, y = -l, dot(x) = 1], time_span = [2, 5],
+  parameter_values = [{values}])$""")
     found = motion_problem(file, Request(), Limits(), open_parameters=["l"]).start
-    assert {name: float(value) for name, value in found.items()} == {"t": 0} | start
+    assert {name: float(value) for name, value in found.items()} == {"t": 2} | start
 
 
 def test_another_process_has_all_but_what_was_compiled(paper):

@@ -1,5 +1,6 @@
 """Radii of convergence that the equations of motion decide: closed forms of motions with weak singularities."""
 
+import dataclasses
 import math
 from fractions import Fraction
 
@@ -10,7 +11,8 @@ from scipy.integrate import quad, solve_ivp
 
 import holonom
 from holonom.program.motion_program import Operation
-from holonom.series.singularities import COMPLEX, MPMATH, _multiple_zero
+from holonom.series.radius import POLYNOMIAL
+from holonom.series.singularities import COMPLEX, MPMATH, _leaves_open, _multiple_zero
 
 ONE = """
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
@@ -241,3 +243,10 @@ def test_the_error_of_a_logarithmic_singularity_follows_from_a_shorter_series():
     found = radius(ONE.format(force="-x^2 - x + 1 - 4/(x + 2)", x=2, v=1), order=60)
     assert found.estimate == pytest.approx(exact, abs=found.uncertainty)
     assert 0 < found.uncertainty < 0.01 * exact
+
+
+@pytest.mark.parametrize(("distance", "is_open"), [(0.5, False), (0.59, False), (0.61, True), (2.0, True)])
+def test_a_coarse_estimate_leaves_singularities_open_beyond_its_least_radius(distance, is_open):
+    coarse = dataclasses.replace(POLYNOMIAL, estimate=1.0, uncertainty=0.4)
+    assert _leaves_open(coarse, distance) is is_open
+    assert not _leaves_open(dataclasses.replace(coarse, uncertainty=0.1), distance)

@@ -51,6 +51,7 @@ def test_a_change_is_relative_to_nominal_sizes_or_to_the_largest_number_beyond_t
     change = unit * np.array([[1e-6, 0.0], [1e-6, 1e-6]])
     numbers = unit * np.array([[0.5, 0.0], [1e-4, 4e-3]])
     assert share_of(change, numbers, sizes) == pytest.approx([1e-3, 1e-3 / 4])
+    assert share_of(change, 1.4 * numbers, sizes) == pytest.approx([1e-3, 1e-3 / 5.6])
     assert Nominal(1.0, sizes).share(change[:, 0], numbers[:, 0]) == pytest.approx(1e-3)
 
 
