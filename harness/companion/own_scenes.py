@@ -22,9 +22,9 @@ PAGES = ("the-system", "equations-of-motion", "free-motion", "initial-motion", "
 OPTIONS_OF_SERIES = (("order", 40),)
 NOT_OF_NAMES = re.compile(r"[^a-z0-9]+")
 CONTENTS = """
-## {file}
-
 ```{{toctree}}
+:caption: {file}
+
 {names}
 ```
 """

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT_OF_PANEL = 6.5, 2.8  # inches
 UNLIKE = 30.0  # how many times larger a curve is that leaves another one flat
-NOTHING = 1e-9  # size of a curve that is rounding alone
+NOTHING = 1e-9  # relative to the largest value: rounding alone
 IN_A_COLUMN = 12  # curves in a column of a legend
 
 
@@ -117,9 +117,9 @@ def of_like_size(curves: Mapping[str, NDArray]) -> list[dict[str, NDArray]]:
     """
     sizes = {name: float(np.max(np.abs(samples.astype(float)), initial=0.0)) for name, samples in curves.items()}
     parts: list[dict[str, NDArray]] = []
-    top = 0.0
+    top, largest = 0.0, max(sizes.values(), default=0.0)
     for name in sorted(curves, key=sizes.__getitem__, reverse=True):
-        if not parts or NOTHING < sizes[name] < top / UNLIKE:
+        if not parts or NOTHING * largest < sizes[name] < top / UNLIKE:
             parts.append({})
             top = sizes[name]
         parts[-1][name] = curves[name]
@@ -132,6 +132,10 @@ def _draw(axes: "Axes", times: NDArray[np.float64], curves: Mapping[str, NDArray
         colour = PALETTE[index % len(PALETTE)]
         label = f"{with_symbols(name)} ({joints[name]})" if name in joints else with_symbols(name)
         axes.plot(times, samples.astype(float), linestyle=line, color=colour, label=label)
+    low, high = axes.dataLim.intervaly
+    size = max(abs(low), abs(high))
+    if high - low < NOTHING * size:
+        axes.set_ylim(low - size / 20, high + size / 20)
     columns = math.ceil(len(curves) / IN_A_COLUMN)
     axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), ncols=columns)
 

@@ -32,14 +32,17 @@ ROUGH = (
 """
 )
 UNCONSTRAINED = OWN.replace("[y - u*x]", "[]").replace("[u]", "[]")
-UNDRAWN = """load("holonom.mac")$
+PLAIN = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x, y], controls = [u],
   kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y - u*x])$
 rising : holonomic_scene(system, title = "Rising", control_law = [u = 1 + t],
   initial_state = [x = 1, dot(x) = 0], time_span = [0, 1], observe = [residuals])$
 endless : holonomic_scene(system, title = "Endless", control_law = [u = 1 + t], initial_state = [x = 1, dot(x) = 0])$
 """
-DRAWN = UNDRAWN.replace("[y - u*x])$", "[y - u*x], drawing = [point([x, y])])$")
+DRAWN = PLAIN.replace("[y - u*x])$", "[y - u*x], drawing = [point([x, y])])$")
+RUBBING = "forces = [rubbing = [-abs(lambda1)*signum(dot(x) + 2)/10, 0]]"
+BENT = "if t < 1/2 then 1 + t else 1 + t + (t - 1/2)^3"
+UNDRAWN = PLAIN.replace("constraints", f"{RUBBING}, constraints").replace("u = 1 + t]", f"u = {BENT}]")
 TEXTS = {"my system": SMOOTH, "rough": ROUGH, "unconstrained": UNCONSTRAINED, "drawn": DRAWN, "undrawn": UNDRAWN}
 
 

@@ -79,6 +79,23 @@ def test_a_system_that_does_not_say_how_it_looks_has_its_curves(own):
     assert "The system has no drawing." in pages.words(own / "5-undrawn-motion.html")
 
 
+def test_equations_that_forces_with_multipliers_leave_out_are_not_called_long(own):
+    reacting, long = (pages.words(own / f"{name}-equations-of-motion.html") for name in ("5-undrawn", "7-chain"))
+    assert ("for each pattern of signs alone" in reacting, "too long to read" in reacting) == (True, False)
+    assert ("for each pattern of signs alone" in long, "too long to read" in long) == (False, True)
+
+
+def test_a_switched_law_is_said_to_be_that_of_the_initial_time(own):
+    around = "Control law around the initial time"
+    assert around in pages.words(own / "5-undrawn-the-system.html")
+    assert around not in pages.words(own / "4-drawn-the-system.html")
+
+
+def test_the_contents_name_the_file_of_each_chapter(own):
+    captions = re.findall(r'<span class="caption-text">(.*?)</span>', (own / "5-undrawn-motion.html").read_text())
+    assert captions == [*(f"{name}.mac" for name in TEXTS), "weightless_cabin.mac", "chain.mac"]
+
+
 def test_a_file_that_is_refused_leaves_nothing(tmp_path):
     outcome, directory = made(tmp_path, {"my system": SMOOTH.replace("x = 1", "x = 1, y = 2")})
     assert outcome.return_value == 2
