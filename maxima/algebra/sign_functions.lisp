@@ -6,6 +6,9 @@
 ;;;
 ;;; where s is the sign of g, of a - b, of b - a, a symbol for each such switching function. They are in the order
 ;;; of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g) stay.
+;;;
+;;; g may vanish identically for some values of the signs in it, as max(0, x) does where x < 0. There max(0, x) > 0 is
+;;; false and max(0, x) >= 0 is true: such a g is written as a sum over these values.
 
 (in-package :maxima)
 
@@ -30,11 +33,11 @@
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
               ((root-of-size-p e) (power (size-with-sign-met (with-signs (second (second e)))) (third e)))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
-              ((eq operator '%signum) (sign-of-function (with-signs (second e))))
+              ((eq operator '%signum) (sign-or-tie (with-signs (second e)) 0))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
               ((member operator '($min %min)) (extremum -1 (mapcar #'with-signs (cdr e))))
               ((member operator '($unit_step %unit_step $hstep %hstep))
-               (weight-of-sign (sign-of-function (with-signs (second e)))))
+               (weight-of-sign (sign-or-tie (with-signs (second e)) -1)))
               (t (let ((parts (mapcar #'with-signs (cdr e))))
                    (if (same-items-p parts (cdr e))
                        e
@@ -120,15 +123,55 @@
         ((atom condition) (refuse-condition condition))
         (t (let ((parts (cdr condition)))
              (case (caar condition)
-               ((mgreaterp mgeqp) (comparison-weight (first parts) (second parts)))
-               ((mlessp mleqp) (comparison-weight (second parts) (first parts)))
+               (mgreaterp (comparison-weight (first parts) (second parts) -1))
+               (mgeqp (comparison-weight (first parts) (second parts) 1))
+               (mlessp (comparison-weight (second parts) (first parts) -1))
+               (mleqp (comparison-weight (second parts) (first parts) 1))
                (mand (muln (mapcar #'condition-weight parts) nil))
                (mor (sub 1 (muln (mapcar #'(lambda (part) (sub 1 (condition-weight part))) parts) nil)))
                (mnot (sub 1 (condition-weight (first parts))))
                (t (refuse-condition condition)))))))
 
-(defun comparison-weight (greater less) (weight-of-sign (sign-of-function (with-signs (sub greater less)))))
+(defun comparison-weight (greater less tie) (weight-of-sign (sign-or-tie (with-signs (sub greater less)) tie)))
 (defun refuse-condition (condition) ($refuse '$condition_without_comparison condition))
+
+(defparameter *most-signs* 6 "Within a function, so that it is looked at for all their values.")
+
+(defun sign-or-tie (g tie)
+  "The sign of g, or the tie where g vanishes identically."
+  (if *written-openly*
+      (let* ((*written-openly* nil) (*signs-met* nil) (sign (sign-or-tie-by-values (with-signs g) tie)))
+        (if sign (openly sign) (let ((*written-openly* t)) (sign-of-function g))))
+      (or (sign-or-tie-by-values g tie) (sign-of-function g))))
+
+(defun sign-or-tie-by-values (g tie)
+  "nil where g vanishes for no values of the signs in it."
+  (let ((signs (signs-in g)) ($ratprint nil))
+    (cond ((zerop1 g) tie)
+          ((and signs (<= (length signs) *most-signs*) (vanishes-for-signs-p g signs))
+           ($ratsimp (sum-over-signs g signs tie))))))
+
+(defun signs-in (g) (remove-if #'(lambda (symbol) (free g symbol)) (mapcar #'car *signs-met*)))
+
+(defun vanishes-for-signs-p (g signs)
+  (if signs
+      (some #'(lambda (value) (vanishes-for-signs-p (maxima-substitute value (first signs) g) (rest signs))) '(1 -1))
+      (zerop1 ($ratsimp g))))
+
+(defun sum-over-signs (g signs tie)
+  "The sign of g, linear in each of the signs in it."
+  (if signs
+      (let ((symbol (first signs)))
+        (addn (mapcar #'(lambda (value)
+                          (let ((part (sum-over-signs (maxima-substitute value symbol g) (rest signs) tie)))
+                            (mul (weight-of-sign (mul value symbol)) (maxima-substitute value symbol part))))
+                      '(1 -1))
+              nil))
+      (let ((simplified ($ratsimp g))) (if (zerop1 simplified) tie (sign-of-function simplified)))))
+
+(defun openly (e)
+  (dolist (met *signs-met* e)
+    (setq e (maxima-substitute (simplifya (list '(%signum) (cdr met)) nil) (car met) e))))
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."

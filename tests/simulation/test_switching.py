@@ -438,6 +438,23 @@ def test_a_switching_function_contained_a_symbol_for_another_sign(force, functio
     assert function in {switching.function for switching in report.switchings}
 
 
+@pytest.mark.parametrize(
+    ("condition", "end"),
+    [
+        ("max(0, -x) > 0", 1 / 2),
+        ("abs(x) > x", 1 / 2),
+        ("max(0, x) > 0", -17 / 8),
+        ("unit_step(x) > 0", -17 / 8),
+        ("signum(x) > signum(dot(x))", -17 / 8),
+        ("max(0, x) >= 0", -3),
+    ],
+)
+def test_a_condition_on_what_vanishes_between_signs_was_true_or_false_by_chance(condition, end):
+    """From x = 1 at rest with the acceleration -8 while the condition holds, -1 elsewhere."""
+    report = end_of(mass(force=f"if {condition} then -8 else -1", x="1", v="0", end="1"))
+    assert report.coordinates["x"] == pytest.approx(end, abs=1e-12)
+
+
 @pytest.mark.parametrize("engine", ENGINES)
 @pytest.mark.parametrize("force", ["-9*max(0, x)^(3/2) - 1", "if x > 0 then -1 - sqrt(x) else -1"])
 def test_a_start_at_rest_on_the_surface_of_a_root_ended_in_an_internal_error(force, engine):
