@@ -194,6 +194,7 @@ def _compared(
         for k in range(ORDER + 1):
             true = _coefficient(prescribed, k)
             yield ComparedValue(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
+    yield from _values_of_rows(series.controls, curve, mp.zero)
     yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
@@ -375,21 +376,26 @@ def _values_of_servo(
 ) -> Iterator[ComparedValue]:
     """Check that the outputs stay zero along the program's motion.
 
-    That motion is also the one of the power series, with its multipliers.
+    That motion is also the one of the power series, with its multipliers and controls.
     """
     taylor = Taylor(ORDER)
     curve, computed = _expanded(problem)
     found = {name: computed[name] for name in motion.system.controls if name in computed}
-    if series:
-        reactions = dict.fromkeys(series.multipliers, (mp.zero,)) | {name: computed[name] for name in problem.reactions}
-        yield from _values_of_rows(series.coordinates, curve, mp.zero)
-        forces = (mp.fsum(map(abs, row)) for row in (*reactions.values(), *found.values()))
-        yield from _values_of_rows(series.multipliers, reactions, max(forces, default=mp.zero))
     law = motion.law.at(Taylor(ORDER + 1), curve["t"][0], motion.parameters())
+    if series:
+        reactions = {name: computed[name] for name in problem.reactions}
+        yield from _values_of_rows(series.coordinates, curve, mp.zero)
+        largest = max((mp.fsum(map(abs, row)) for row in (*reactions.values(), *found.values())), default=mp.zero)
+        yield from _values_of_rows(series.multipliers, reactions, largest)
+        yield from _values_of_rows(series.controls, law | found | _accelerations(curve), largest)
     multipliers = [computed[name] for name in motion.system.multipliers]
     curve = motion.parameters() | found | law | curve
     yield from _values_of_forces(motion, taylor, curve, multipliers, series.constraint_forces if series else {})
     yield from _values_of_equations(motion, taylor, curve, multipliers, lambda curve, _: curve)
+
+
+def _accelerations(curve: Values) -> Values:
+    return {f"ddot({q})": tuple((k + 1) * (k + 2) * x for k, x in enumerate(row[2:])) for q, row in curve.items()}
 
 
 def _values_of_rows(rows: Mapping[str, Sequence[str]], true: Values, largest: mp.mpf) -> Iterator[ComparedValue]:

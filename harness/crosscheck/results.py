@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -133,7 +134,7 @@ VERIFIERS: Mapping[Publication, tuple[type, Callable[[Description, Content], Che
 
 
 def _derivatives(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue]:
-    names = (*content["coordinates"], *content["multipliers"])
+    names = (*content["coordinates"], *content["multipliers"], *content["controls"])
     moving = content["sensitivities"]
     directions = {name.partition(", ")[2].rstrip(")") for name in moving}
     lengths = {len(row) for row in (*moving.values(), *content["coordinates"].values())}
@@ -182,6 +183,10 @@ def _residuals(motion: DescribedMotion, content: Content, direction: str, step: 
         return tuple(x + step * dx for x, dx in zip(numbers(row), numbers(change), strict=True))
 
     curve = parameters | motion.law.at(Taylor(order + 3), time, parameters) | {"t": (time, mp.one)}
+    for name, row in content["controls"].items():
+        changes = [x - true for x, true in zip_longest(moved(name, row), curve[name][: order + 1], fillvalue=mp.zero)]
+        size = mp.fsum(map(abs, curve[name]))
+        yield from (ComparedValue(f"power {k} of {name}", x, mp.zero, size) for k, x in enumerate(changes))
     curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
     multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
     yield from values_of_series(motion, curve, tuple(content["coordinates"]), multipliers, order)

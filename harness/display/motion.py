@@ -37,7 +37,7 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
     """
     from ..series.radius import described
 
-    columns = {**motion.coordinates, **motion.multipliers, **motion.constraint_forces}
+    columns = {**motion.coordinates, **motion.multipliers, **motion.constraint_forces, **motion.controls}
     title = f"{heading(motion.scene, motion.title)}, about t = {motion.t0}"
     _show_coefficients(console, title, columns)
     directions = dict.fromkeys(_direction(name) for name in motion.sensitivities)

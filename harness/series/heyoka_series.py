@@ -80,7 +80,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
     Returns
     -------
     MotionSeries
-        Series of coordinates, multipliers and observed constraint forces, without continuation.
+        Series of coordinates, multipliers, and observed constraint forces and controls, without continuation.
 
     Raises
     ------
@@ -100,8 +100,8 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
             ),
         )
     coordinates = zip(problem.coordinates, coefficients, strict=False)
-    rates = zip(_reactions(problem), map(_rate, coefficients[len(problem.state) :]), strict=True)
-    reactions = {name: _texts(row, precision) for name, row in rates}
+    rates = zip(_computed(problem), map(_rate, coefficients[len(problem.state) :]), strict=True)
+    computed = {name: _texts(row, precision) for name, row in rates}
     return MotionSeries(
         scene=problem.scene,
         title=problem.title,
@@ -109,8 +109,9 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
         t0=problem.start["t"],
         arithmetic=precision.name,
         coordinates={name: _texts(row[: order + 1], precision) for name, row in coordinates},
-        multipliers={name: row for name, row in reactions.items() if not name.startswith("Lambda")},
-        constraint_forces={name: row for name, row in reactions.items() if name.startswith("Lambda")},
+        multipliers={name: computed[name] for name in problem.reactions},
+        constraint_forces={name: row for name, row in computed.items() if name.startswith("Lambda")},
+        controls={name: computed[name] for name in _controls(problem)},
         program=_of_state(problem),
     )
 
@@ -179,7 +180,7 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
     Returns
     -------
     taylor_adaptive
-        Its state ends with the integrals of multipliers and constraint forces.
+        Its state ends with the integrals of multipliers, constraint forces and controls.
 
     Raises
     ------
@@ -197,8 +198,10 @@ def expanding_integrator(problem: MotionProblem, order: int, precision: Precisio
         )
     heyoka = import_heyoka()
     variables = {"t": heyoka.time, **{name: heyoka.expression(name) for name in problem.state}}
-    values = heyoka_expressions(problem.motion, variables | _unused(problem, precision), precision.ratio)
-    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in _reactions(problem)]
+    variables |= _unused(problem, precision)
+    programs = filter(None, (problem.motion, problem.controls))
+    values = {k: x for each in programs for k, x in heyoka_expressions(each, variables, precision.ratio).items()}
+    integrals = [(heyoka.expression(f"integral of {name}"), values[name]) for name in _computed(problem)]
     return _integrator(
         heyoka,
         problem,
@@ -227,9 +230,14 @@ def _integrator(
     )
 
 
-def _reactions(problem: MotionProblem) -> list[str]:
-    """Return names of multipliers and constraint forces."""
-    return [name for name in problem.motion.outputs if not name.startswith("ddot(")]
+def _computed(problem: MotionProblem) -> list[str]:
+    """Return names of multipliers, constraint forces and controls."""
+    forces = (name for name in problem.motion.outputs if name.startswith("Lambda"))
+    return [*problem.reactions, *forces, *_controls(problem)]
+
+
+def _controls(problem: MotionProblem) -> tuple[str, ...]:
+    return tuple(problem.controls.outputs) if problem.controls else ()
 
 
 def _unused(problem: MotionProblem, precision: Precision) -> dict[str, Any]:

@@ -52,6 +52,9 @@ class MotionSeries(Shown):
     coordinates: Mapping[str, NumberTexts] = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
     multipliers: Mapping[str, NumberTexts] = entry("Coefficients of the multipliers, by name.")
     constraint_forces: Mapping[str, NumberTexts] = entry("Lambda[s]; empty where the scene does not observe them.")
+    controls: Mapping[str, NumberTexts] = entry(
+        "Coefficients of the controls, by name; empty where the scene does not observe them."
+    )
     continuation: Continuation | None = entry(
         "States at the times where the motion was expanded anew; null where no continuation is asked for.", None
     )
@@ -110,7 +113,7 @@ class MotionSeries(Shown):
         -------
         tuple of mapping of str to tuple of str
         """
-        return self.coordinates, self.multipliers, self.constraint_forces, self.sensitivities
+        return self.coordinates, self.multipliers, self.constraint_forces, self.controls, self.sensitivities
 
 
 @dataclass(frozen=True)
@@ -153,6 +156,9 @@ class SeriesDocument:
     coordinates: PublishedSeries = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
     multipliers: PublishedSeries = entry("Coefficients of the multipliers, by name.")
     constraint_forces: PublishedSeries = entry("Lambda[s]; empty where the scene does not observe them.")
+    controls: PublishedSeries = entry(
+        "Coefficients of the controls, by name; empty where the scene does not observe them."
+    )
     sensitivities: PublishedSeries = entry(
         "Derivatives of these coefficients by parameters and initial values, by names such as d(x, m)."
     )

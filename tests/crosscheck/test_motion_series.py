@@ -41,8 +41,8 @@ def test_right_series_agree_and_wrong_ones_are_found(name):
 
 
 def changed(found: SceneSeries, draw: random.Random) -> SceneSeries:
-    """The series with one coefficient changed, of a coordinate or of a multiplier."""
-    group = draw.choice(["coordinates", "multipliers"] if found.series.multipliers else ["coordinates"])
+    """The series with one coefficient changed, of a coordinate, a multiplier or a control."""
+    group = draw.choice([group for group in ("coordinates", "multipliers", "controls") if getattr(found.series, group)])
     rows = dict(getattr(found.series, group))
     name = draw.choice(list(rows))
     place = draw.randrange(2 if group == "coordinates" else 0, 8)
@@ -94,7 +94,7 @@ def test_wrong_controls_of_servo_constraints_are_found(name):
 
 @pytest.mark.parametrize("name", ["arm", "level_load", pytest.param("stewart_platform", marks=pytest.mark.long)])
 def test_wrong_series_under_servo_constraints_are_found(name):
-    """Coordinates, multipliers and constraint forces, each coefficient changed in a draw."""
+    """Coordinates, multipliers and controls, each coefficient changed in a draw."""
     source = Source(EXAMPLES / f"{name}.mac")
     motions, description = read_motions(source.description(), ask_for_check(source, {})), source.description()
     served = {scene.name for scene in description.scenes if scene.servo_trees}

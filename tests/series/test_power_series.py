@@ -389,3 +389,28 @@ def test_series_on_both_sides_of_a_hertz_contact(contact):
     inside, outside = (holonom.system(text.format(contact=contact, x=x)).series(order=3) for x in (-1, 1))
     assert numbers(inside.coordinates["x"]) == [-1, -1, 10, 5]
     assert numbers(outside.coordinates["x"]) == [1, 1, 0, 0]
+
+
+@pytest.mark.parametrize("options", [{}, {"precision": "double"}], ids=["maxima", "heyoka"])
+def test_controls_have_series_and_servo_constraints_have_no_multipliers(options):
+    """A mass on a rope of length l is moved as x = t^3 and lifted as y = t^2 - 4; w pushes along exp(t)."""
+    text = """system : holonomic_system(coordinates = [x, y], controls = [F, l, w],
+            kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces = [F + w, 0], constraints = [y + l])$
+        s : holonomic_scene(system, servo_constraints = [x = t^3, y = t^2 - 4], control_law = [w = exp(t)],
+            initial_state = [])$"""
+    found = holonom.system(text).series(order=6, **options)
+    assert {*found.multipliers} == {"lambda1"}
+    expected = {
+        "F": [-1, 5, *(-1 / math.factorial(k) for k in range(2, 7))],
+        "w": [1 / math.factorial(k) for k in range(7)],
+        "ddot(l)": [-2, *[0] * 6],
+    }
+    assert {*found.controls} == {*expected}
+    for name, row in expected.items():
+        assert [float(Fraction(x)) for x in found.controls[name]] == pytest.approx(row, abs=1e-14)
+
+
+def test_a_polynomial_motion_under_servo_constraints_is_one():
+    text = """system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2, forces = [F])$
+        s : holonomic_scene(system, servo_constraints = [x = t^3], initial_state = [])$"""
+    assert holonom.system(text).series(order=14).radius.note == POLYNOMIAL.note
