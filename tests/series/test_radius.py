@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from paper_series import paper_by_hand
 
-from holonom.series.radius import estimate_radii, estimate_radius
+from holonom.series.radius import COMPLEX_PAIR, REAL_TIME, estimate_radii, estimate_radius
 
 ORDERS = (*range(8, 30), 32, 36, 40, 45, 50, 60, 80, 100, 120, 160)
 HIGHEST = max(ORDERS)
@@ -160,6 +160,13 @@ def test_where_there_is_no_radius_words_say_why(row, said):
     radius = estimate_radius([row])
     assert radius.estimate is None
     assert said in radius.note
+
+
+@pytest.mark.parametrize(("angle", "note"), [(0.0, REAL_TIME), (1.0, COMPLEX_PAIR), (math.pi, REAL_TIME)])
+def test_a_pair_of_singularities_is_told_from_one_at_a_real_time(angle, note):
+    radius = estimate_radius([[mpmath.mpf(math.cos(angle * n)) * mpmath.mpf(1.5) ** -n for n in range(40)]])
+    assert radius.note == note
+    assert radius.estimate == pytest.approx(1.5, abs=radius.uncertainty + 1e-9)
 
 
 def test_many_series_at_once_have_the_radii_of_each_to_the_last_bit():
