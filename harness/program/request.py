@@ -8,7 +8,7 @@ from enum import StrEnum
 from ..failures import ErrorKind, HolonomError
 from ..options import LONGEST, option, within_reach
 
-SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/\d+)?)", re.IGNORECASE)
+SETTING = re.compile(r"([^\W\d]\w*)=(-?\d+(?:\.\d+)?(?:e-?\d+)?(?:/0*[1-9]\d*)?)", re.IGNORECASE)
 
 
 class Solve(StrEnum):

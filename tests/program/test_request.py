@@ -74,7 +74,9 @@ def test_the_command_writes_python(tmp_path):
     assert "def motion(values" in file.read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("text", ["N", "N=", "=4", "N=quit()", "N=1;2", "a b=1", "N=4]$ system(1)$ [", "N=1/2/3"])
+@pytest.mark.parametrize(
+    "text", ["N", "N=", "=4", "N=quit()", "N=1;2", "a b=1", "N=4]$ system(1)$ [", "N=1/2/3", "N=1/0"]
+)
 def test_a_setting_that_is_no_number_is_refused(text):
     with failing(ErrorKind.NOT_A_SETTING):
         read_settings([text])
