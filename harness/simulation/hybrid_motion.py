@@ -32,7 +32,7 @@ from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern, sticking
 from ..program.motion_problem import Built, DependsOn, MotionProblem, Sign, function_of_knot
 from ..program.precision import Precision
-from ..program.sign_pattern import driven, program_in, switching_function
+from ..program.sign_pattern import driven, problem_in, program_in, switching_function
 from .accuracy_check import has_root_of
 from .branch_points import last_step, real_state
 from .constraints.factorization import factored_constraints
@@ -43,13 +43,13 @@ from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_o
 from .events import Events, Values, values_in
 from .friction_modes import FrictionModes, modes_that_may_agree
 from .inputs import Inputs
-from .matrices import Matrices, Vector
+from .matrices import Matrices, MotionMatrices, Vector
 from .mode import UNIQUE, Mode
 from .nominal import first_order_changes, nominal_of, with_nominal
 from .place_and_reason import place_and_reason
 from .request import SimulationRequest
 from .residuals import residuals
-from .time_events import time_events
+from .time_events import remains_zero, time_events
 from .uniqueness import differing_outputs
 from .zeros import ZERO, Crossing
 
@@ -129,6 +129,7 @@ class HybridMotion:
         self._conditions: dict[Mode, Events] = {}
         start, *state = (precision.number(problem.start[name]) for name in ("t", *problem.state))
         pattern = self._first_pattern(start, np.array(state))
+        self._require_signs(pattern, start, np.array(state))
         self.intervals.append(ModeInterval(start, self._mode_of(pattern, problem)))
 
     @property
@@ -364,6 +365,7 @@ class HybridMotion:
         `left` are the switching surfaces that the motion leaves.
         """
         before, start = self.mode, self._real_state(pattern, t, state)
+        self._require_signs(pattern, t, start)
         after = self._mode_of(pattern, self._started_at(t, start))
         state = before.settled(t, state)  # without the drift, which takes no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
@@ -564,6 +566,22 @@ class HybridMotion:
                 "%(sign)s is zero, and not in forces alone, which leaves open how the motion continues", sign=sign.of
             ),
         )
+
+    def _require_signs(self, pattern: Pattern, t: Any, state: Numbers) -> None:
+        """Reject functions of the time that stay zero, if the motion depends on their signs."""
+        now, last = (Fraction(self._precision.text(time)) for time in (t, self._end))
+        end = min([last, *self._to_come])
+        for sign in self.problem.signs:
+            if sign.by is DependsOn.TIME and sign.name not in self._time_events:
+                function = switching_function(self.problem, "switch", sign.name, pattern)
+                if remains_zero(self.problem, function, now, end) and self._depends_on(sign, pattern, t, state):
+                    self._reject(t, translatable("%(sign)s remains zero, which decides no condition", sign=sign.of))
+
+    def _depends_on(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
+        """Return True if the equations of motion are others with the other sign."""
+        sides = (problem_in(self.problem, {**pattern, sign.name: side}) for side in (1, -1))
+        one, other = (MotionMatrices(side)(float(t), as_floats(state)) for side in sides)
+        return not all(np.allclose(a, b, CONTINUOUS, 0) for a, b in zip(one, other, strict=True))
 
     def _crowded(self, t: Any) -> bool:
         return len(self.intervals) > CROWD and float(t - self.intervals[-CROWD].start) < CROWDED * self._span

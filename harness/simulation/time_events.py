@@ -46,6 +46,9 @@ RATIONAL = Arithmetic(
 )
 
 
+LATER = (Fraction(1, 10**6), Fraction(3, 10), Fraction(7, 10))  # parts of a time at which a function is looked at
+
+
 class TimeEvent(NamedTuple):
     """The zero of a switching function of the time."""
 
@@ -80,6 +83,30 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
             if function is not None and function.b:
                 found[sign.name] = TimeEvent(-function.a / function.b, 1 if function.b > 0 else -1)
     return found
+
+
+def remains_zero(problem: MotionProblem, function: Program, start: Fraction, end: Fraction) -> bool:
+    """Return True if a function of the time is zero at several times, by exact numbers.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+    function : Program
+        One of its functions. It may contain the open parameters.
+    start, end : Fraction
+        Times between which it is looked at.
+
+    Returns
+    -------
+    bool
+        False where it is made of other functions than polynomials.
+    """
+    program = program_with_values(problem, function)
+    if names_used(program) & set(program.inputs) - {"t"}:
+        return False
+    times = (start + part * (end - start) for part in LATER)
+    return all(value == 0 for t in times for value in run_program(program, {"t": t}, RATIONAL).values())
 
 
 def _affine(program: Program) -> _Affine | None:

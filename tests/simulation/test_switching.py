@@ -49,6 +49,10 @@ system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potent
 slide : holonomic_scene(system, initial_state = [x = {x}, dot(x) = {v}], time_span = [0, {end}])$
 """
 
+STEERED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+slide : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$
+"""
 LIFT = """load("holonom.mac")$
 system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2, constraints = [z - u],
   drawing = [point([0, u])])$
@@ -77,6 +81,10 @@ def pendulum(potential="", forces="0, 0", law="1 + t/10", start="x = 3/5, y = -4
 
 def mass(force="0", potential="0", x="0", v="0", end="1") -> MotionProblem:
     return asked(MASS.format(force=force, potential=potential, x=x, v=v, end=end))
+
+
+def steered(law: str, force: str) -> MotionProblem:
+    return asked(STEERED.format(law=law, force=force))
 
 
 def end_of(problem: MotionProblem, engine: EngineName = EngineName.TAYLOR, **wanted) -> Report:
@@ -340,6 +348,11 @@ def test_a_mass_rests_at_the_bottom_of_a_kink():
         (lambda: pendulum(law="1/(2 - t)", start="x = 3/10, y = -2/5", end="3"), "2", ()),
         (lambda: pendulum(law="1 + sqrt(1 - t)", start="x = 6/5, y = -8/5", end="3"), "1", ()),
         (lambda: mass(force="sqrt(1 - t)", end="3"), "1", ()),
+        # functions of a law that remain zero, whose signs were taken for 1 or -1
+        (lambda: steered("1", "if u > 1 then -8 else -1"), "0", ("u-1",)),
+        (lambda: steered("if t < 1/2 then 2 else 1", "if u > 1 then -8 else -1"), "0.5", ("u-1",)),
+        (lambda: steered("max(t, 1/2)", "-signum(dot(u))"), "0", ("dot(u)",)),
+        (lambda: steered("max(t, 1/2)", "-signum(u - 1/2)"), "0", ("u-1/2",)),
         # on the boundary of two halves of the time span, with a wrong number and exit status 1
         (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1", ()),
         # infinitely many switchings before t = 1, which were passed with a wrong velocity and exit status 0
@@ -350,6 +363,14 @@ def test_what_mechanics_does_not_decide_is_refused_with_its_time(problem, time, 
     with failing(ErrorKind.NO_WAY_ON, *facts) as stopped:
         end_of(problem(), EngineName.AUTO)
     assert float(stopped.value.detail.split(",")[0]) == pytest.approx(float(time), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("law", "force", "place"),
+    [("max(t, 1/2) - 1/2", "-max(0, u)", -1 / 48), ("0", "1 - abs(u)", 1 / 2), ("t^40", "signum(u)", 1 / 2)],
+)
+def test_a_function_may_remain_zero_or_small_if_its_sign_does_not_matter(law, force, place):
+    assert end_of(steered(law, force)).coordinates["x"] == pytest.approx(place, abs=1e-12)
 
 
 @pytest.mark.parametrize("first", [0.0, 700.0])
