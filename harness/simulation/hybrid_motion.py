@@ -50,7 +50,7 @@ from .place_and_reason import place_and_reason
 from .request import SimulationRequest
 from .residuals import residuals
 from .time_events import remains_zero, time_events
-from .uniqueness import differing_outputs
+from .uniqueness import accelerations_differ, differing_outputs
 from .zeros import ZERO, Crossing
 
 CONTINUOUS = 1e-9  # relative change at a given time that is rounding
@@ -125,6 +125,7 @@ class HybridMotion:
         self._functions: dict[Hashable, Any] = problem.once(("switching", precision.name), problem.matrices, dict)
         self._inputs = Inputs(problem, precision)
         self._left_open: tuple[str, ...] = ()  # outputs that depend on a sign that the accelerations do not
+        self._undecided = ""  # functions with such signs that other accelerations depend on
         self._left: dict[str, Any] = {}  # signs whose switching surfaces the motion has left, with the times
         self._conditions: dict[Mode, Events] = {}
         start, *state = (precision.number(problem.start[name]) for name in ("t", *problem.state))
@@ -264,12 +265,17 @@ class HybridMotion:
             self._switch(pattern, list(changes), t, state, ())
 
     def _look_at_rest(self, step: Step) -> None:
-        """Note outputs that a sign left open if its function remains zero."""
-        if self._left_open:
+        """Note outputs, and reject accelerations, that a sign left open."""
+        if self._left_open or self._undecided:
             t = step.start + (step.end - step.start) / 2
             if self._zeros_at(set(), step.mode.pattern, t, step.states(np.array([t]))[:, 0]):
                 self.undetermined |= dict.fromkeys(self._left_open)
-            self._left_open = ()
+                if self._undecided:
+                    self._reject(
+                        step.start,
+                        translatable("%(sign)s remains zero, which decides no condition", sign=self._undecided),
+                    )
+            self._left_open, self._undecided = (), ""
 
     def _steps(self, stop: Any) -> Iterator[Step]:
         """Yield steps of the mode, the last one to a branch point.
@@ -457,6 +463,9 @@ class HybridMotion:
         if found and all(found[0].is_shared_as(each) for each in found):
             if len(found) > 1:
                 self._left_open = differing_outputs(self.problem, found, self._precision, t, state)
+                sizes = self.nominal.accelerations
+                differ = accelerations_differ(self.problem, found, self._precision, t, state, sizes)
+                self._undecided = self._of(zeros) if differ else ""
             patterns = [each.pattern for each in found]
             return min(patterns, key=lambda each: (self._with_roots(each) is not None, each != pattern))
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
@@ -568,14 +577,14 @@ class HybridMotion:
         )
 
     def _require_signs(self, pattern: Pattern, t: Any, state: Numbers) -> None:
-        """Reject functions of the time that stay zero, if the motion depends on their signs."""
+        """Reject signs of zero that the equations of motion depend on."""
         now, last = (Fraction(self._precision.text(time)) for time in (t, self._end))
         end = min([last, *self._to_come])
         for sign in self.problem.signs:
             if sign.by is DependsOn.TIME and sign.name not in self._time_events:
                 function = switching_function(self.problem, "switch", sign.name, pattern)
                 if remains_zero(self.problem, function, now, end) and self._depends_on(sign, pattern, t, state):
-                    self._reject(t, translatable("%(sign)s remains zero, which decides no condition", sign=sign.of))
+                    self._reject_zero(t, sign.of)
 
     def _depends_on(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
         """Return True if the equations of motion are others with the other sign."""
@@ -588,6 +597,9 @@ class HybridMotion:
 
     def _reject(self, t: Any, reason: str) -> NoReturn:
         raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
+
+    def _reject_zero(self, t: Any, functions: str) -> NoReturn:
+        self._reject(t, translatable("%(sign)s remains zero, which decides no condition", sign=functions))
 
     # ---- numbers at a given time ----
 

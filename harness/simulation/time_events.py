@@ -86,7 +86,7 @@ def time_events(problem: MotionProblem) -> Mapping[str, TimeEvent]:
 
 
 def remains_zero(problem: MotionProblem, function: Program, start: Fraction, end: Fraction) -> bool:
-    """Return True if a function of the time is zero at several times, by exact numbers.
+    """Return True if a function of the time is exactly zero at several times.
 
     Parameters
     ----------

@@ -90,12 +90,39 @@ def differing_outputs(
     return tuple(name for name, differs in zip(found[0], differ, strict=True) if differs)
 
 
+def accelerations_differ(
+    problem: MotionProblem, modes: Sequence[Solution], precision: Precision, t: Any, state: Numbers, sizes: Vector
+) -> bool:
+    """Return True if an acceleration depends on the mode of friction.
+
+    Parameters
+    ----------
+    problem, modes, precision, t, state
+        As for `differing_outputs`.
+    sizes : ndarray, shape (n,)
+        Nominal sizes of the accelerations.
+
+    Returns
+    -------
+    bool
+    """
+    solved = [_solved_in(problem, mode, precision, t, state) for mode in modes]
+    values = np.array([[float(each[name]) for name in problem.accelerations] for each in solved])
+    return bool(np.any(np.ptp(values, axis=0) > UNCHANGED * np.maximum(sizes, np.abs(values).max(axis=0))))
+
+
+def _solved_in(problem: MotionProblem, mode: Solution, precision: Precision, t: Any, state: Numbers) -> dict[str, Any]:
+    """Return accelerations and multipliers in one mode."""
+    motion = program_in(problem, problem.motion, mode.pattern)
+    values = evaluation(motion, precision)(Inputs(problem, precision)(t, state))
+    return dict(zip(motion.outputs, values, strict=True))
+
+
 def _outputs_in(
     problem: MotionProblem, mode: Solution, precision: Precision, t: Any, state: Numbers
 ) -> dict[str, float]:
     """Return multipliers, controls and outputs in one mode."""
-    inputs, motion = Inputs(problem, precision), program_in(problem, problem.motion, mode.pattern)
-    solved = dict(zip(motion.outputs, evaluation(motion, precision)(inputs(t, state)), strict=True))
+    inputs, solved = Inputs(problem, precision), _solved_in(problem, mode, precision, t, state)
     found = {name: solved.get(name, 0.0) for name in problem.multipliers}
     multipliers = np.array(list(found.values()))
     accelerations = np.array([solved[name] for name in problem.accelerations])

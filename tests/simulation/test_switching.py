@@ -53,6 +53,11 @@ STEERED = """load("holonom.mac")$
 system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [{force}])$
 slide : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$
 """
+FIXED = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, forces = [0, {force}],
+  constraints = [{constraint}])$
+slide : holonomic_scene(system, initial_state = [y = 0, dot(y) = 0], time_span = [0, 1])$
+"""
 LIFT = """load("holonom.mac")$
 system : holonomic_system(coordinates = [z], controls = [u], kinetic_energy = dot(z)^2/2, constraints = [z - u],
   drawing = [point([0, u])])$
@@ -353,6 +358,9 @@ def test_a_mass_rests_at_the_bottom_of_a_kink():
         (lambda: steered("if t < 1/2 then 2 else 1", "if u > 1 then -8 else -1"), "0.5", ("u-1",)),
         (lambda: steered("max(t, 1/2)", "-signum(dot(u))"), "0", ("dot(u)",)),
         (lambda: steered("max(t, 1/2)", "-signum(u - 1/2)"), "0", ("u-1/2",)),
+        # functions that a constraint keeps at zero
+        (lambda: asked(FIXED.format(force="if x > y then -8 else -1", constraint="x - y")), "0", ("y-x",)),
+        (lambda: asked(FIXED.format(force="-signum(dot(x))", constraint="x")), "0", ("dot(x)",)),
         # on the boundary of two halves of the time span, with a wrong number and exit status 1
         (lambda: mass(force="atan2(t - 1, -1)", end="2"), "1", ()),
         # infinitely many switchings before t = 1, which were passed with a wrong velocity and exit status 0
