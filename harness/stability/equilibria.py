@@ -484,12 +484,26 @@ class _Search:
         changes = np.moveaxis(rough["equation_by_q"], -1, 0)
         off = np.einsum("kij,jk->ik", changes, tangent.shortest(rough["constraint"]))
         forces = np.max(np.abs(rows.T @ basis.T @ (rough["equation"] - off)), axis=1)
-        directions *= np.minimum(UNCERTAIN * forces / or_one(values), UNRESOLVED / lengths)
-        moved = np.concatenate([directions, -directions], axis=1)
-        near = basis.T @ self._near(q, multipliers, moved, "equation_by_q") @ basis
-        both = (each - stiffness for each in (near, basis.T @ changes @ basis))
-        moving, rounding = (np.max(np.linalg.norm(each, 2, axis=(1, 2))) for each in both)
+        steps = np.minimum(UNCERTAIN * forces / or_one(values), UNRESOLVED / lengths)
+        moved = np.concatenate([directions * steps, -directions * steps], axis=1)
+        straight = basis.T @ self._near(q, multipliers, moved, "equation_by_q") @ basis
+        far = np.tile(steps * lengths > BALANCED, 2)  # where the manifold may be curved
+        curved = [self._stiffness_beside(q + step, multipliers, tangent) for step in moved[:, far].T]
+        both = ([*straight, *curved], basis.T @ changes @ basis)
+        moving, rounding = (max(np.linalg.norm(each - stiffness) for each in some) for some in both)
         return float(moving + UNCERTAIN * rounding)
+
+    def _stiffness_beside(self, q: Vector, multipliers: Vector, tangent: Tangent) -> Matrix:
+        """Return the stiffness on the manifold near a place, infinite where there is none."""
+        q = q - tangent.shortest(self._near(q, multipliers, np.zeros((len(q), 1)), "constraint").T)[:, 0]
+        here, multipliers = self._at(q, multipliers), multipliers.copy()
+        J, unbalanced = here["constraint_by_q"], here["equation"]
+        try:
+            multipliers[self._independent] += np.linalg.lstsq((J * self._sizes).T, self._sizes * unbalanced)[0]
+            basis = Tangent(here["equation_by_a"], J).next_to(tangent.basis).basis
+            return basis.T @ self._at(q, multipliers)["equation_by_q"] @ basis
+        except (HolonomError, ValueError):  # of matrices that are singular, or no numbers
+            return np.full([tangent.basis.shape[1]] * 2, np.inf)
 
     def _is_zero_nearby(self, found: "_Solution") -> bool:
         """Return True if forces in directions without stiffness vanish nearby.

@@ -59,6 +59,20 @@ def test_a_fold_is_not_called_stable():
     assert not found.complete
 
 
+def test_a_fold_on_a_curve_is_not_called_stable():
+    """On the ellipse x = 2 cos(s), y = sin(s) the force of V = u*x*y + 2*y at u = -1 is 2 (cos(2 s) - cos(s))."""
+    ellipse = holonom.system(
+        """system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+          potential_energy = u*x*y + 2*y, constraints = [x^2/4 + y^2 - 1])$
+        s : holonomic_scene(system, control_law = [u = 1], initial_state = [x = 6/5, dot(x) = 0],
+          initial_guess = [y = 4/5])$"""
+    )
+    found = ellipse.branches("u", [0.5, -1.0], starts=100).at[1]
+    fold = max(found, key=lambda each: each.coordinates["x"])
+    assert (fold.coordinates["x"], fold.stability, fold.isolated) == (pytest.approx(2), Stability.UNDECIDED, False)
+    assert not found.complete
+
+
 def test_a_row_for_each_state(fork):
     table = fork.to_pandas()
     assert list(table.columns) == ["u", "phi", "stability"]
