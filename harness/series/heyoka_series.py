@@ -109,7 +109,7 @@ def expand(problem: MotionProblem, order: int, precision: Precision) -> MotionSe
         t0=problem.start["t"],
         arithmetic=precision.name,
         coordinates={name: _texts(row[: order + 1], precision) for name, row in coordinates},
-        multipliers={name: computed[name] for name in problem.reactions},
+        multipliers={name: row for name, row in computed.items() if name in problem.reactions},
         constraint_forces={name: row for name, row in computed.items() if name.startswith("Lambda")},
         controls={name: computed[name] for name in _controls(problem)},
         program=_of_state(problem),
@@ -231,9 +231,9 @@ def _integrator(
 
 
 def _computed(problem: MotionProblem) -> list[str]:
-    """Return names of multipliers, constraint forces and controls."""
-    forces = (name for name in problem.motion.outputs if name.startswith("Lambda"))
-    return [*problem.reactions, *forces, *_controls(problem)]
+    """Return names of computed multipliers, constraint forces and controls."""
+    unwanted = {*map("ddot({})".format, problem.coordinates), *problem.multipliers[len(problem.reactions) :]}
+    return [*(name for name in problem.motion.outputs if name not in unwanted), *_controls(problem)]
 
 
 def _controls(problem: MotionProblem) -> tuple[str, ...]:
