@@ -7,6 +7,8 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 from holonom.errata import PRINTED, PrintedEquation
 from holonom.maxima import run_batch
 
@@ -85,6 +87,7 @@ def test_finds_the_misprints_and_no_others(printed_equations):
     assert [(e.number, e.name) for e in printed_equations if not e.agrees] == MISPRINTS
 
 
+@pytest.mark.long
 def test_the_table_of_the_prompt_has_a_row_for_each_equation(printed_equations):
     command = ["maxima", "--very-quiet", "--init=/dev/null", f"--batch={PRINTED}"]
     text = subprocess.run(command, capture_output=True, text=True, check=True, stdin=subprocess.DEVNULL).stdout
