@@ -387,15 +387,11 @@ def _values_of_servo(
         yield from _values_of_rows(series.coordinates, curve, mp.zero)
         largest = max((mp.fsum(map(abs, row)) for row in (*reactions.values(), *found.values())), default=mp.zero)
         yield from _values_of_rows(series.multipliers, reactions, largest)
-        yield from _values_of_rows(series.controls, law | found | _accelerations(curve), largest)
+        yield from _values_of_rows(series.controls, law | computed, largest)
     multipliers = [computed[name] for name in motion.system.multipliers]
     curve = motion.parameters() | found | law | curve
     yield from _values_of_forces(motion, taylor, curve, multipliers, series.constraint_forces if series else {})
     yield from _values_of_equations(motion, taylor, curve, multipliers, lambda curve, _: curve)
-
-
-def _accelerations(curve: Values) -> Values:
-    return {f"ddot({q})": tuple((k + 1) * (k + 2) * x for k, x in enumerate(row[2:])) for q, row in curve.items()}
 
 
 def _values_of_rows(rows: Mapping[str, Sequence[str]], true: Values, largest: mp.mpf) -> Iterator[ComparedValue]:

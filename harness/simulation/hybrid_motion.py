@@ -271,10 +271,7 @@ class HybridMotion:
             if self._zeros_at(set(), step.mode.pattern, t, step.states(np.array([t]))[:, 0]):
                 self.undetermined |= dict.fromkeys(self._left_open)
                 if self._undecided:
-                    self._reject(
-                        step.start,
-                        translatable("%(sign)s remains zero, which decides no condition", sign=self._undecided),
-                    )
+                    self._reject_zero(step.start, self._undecided)
             self._left_open, self._undecided = (), ""
 
     def _steps(self, stop: Any) -> Iterator[Step]:

@@ -103,15 +103,19 @@ def remains_zero(problem: MotionProblem, function: Program, start: Fraction, end
         False where it is made of other functions than polynomials.
     """
     program = program_with_values(problem, function)
-    if names_used(program) & set(program.inputs) - {"t"}:
+    if not _is_of_time(program):
         return False
     times = (start + part * (end - start) for part in LATER)
     return all(value == 0 for t in times for value in run_program(program, {"t": t}, RATIONAL).values())
 
 
+def _is_of_time(program: Program) -> bool:
+    return not names_used(program) & set(program.inputs) - {"t"}
+
+
 def _affine(program: Program) -> _Affine | None:
     """Return the one output of a program as an affine function of t, or None."""
-    if names_used(program) & set(program.inputs) - {"t"}:
+    if not _is_of_time(program):
         return None
     (degree,) = run_program(program, {"t": 1}, DEGREE).values()
     begun, later = (value for t in (0, 1) for value in run_program(program, {"t": Fraction(t)}, RATIONAL).values())
