@@ -168,7 +168,10 @@ class ErrorKind(Enum):
     )
     NOT_A_SCENE_NAME = ("{detail} cannot be the name of a scene", "give the name that the scene is assigned to")
     NOT_A_PROGRAM = ("this is not a motion program: {detail}", "create it again with `holonom program`")
-    NOT_AN_IDENTIFIER = ("{detail} cannot name a function in C and Python", "use letters, digits and underscores")
+    NOT_AN_IDENTIFIER = (
+        "{detail} cannot name a function in C and Python",
+        "use letters, digits and underscores, a letter first",
+    )
     NAME_TAKEN = ("{detail} has another meaning in the code", "give another name with {--name}")
     INPUT_MISSING = ("no value for {detail}", "give every control a law and every parameter a value")
     COMPILER_MISSING = (

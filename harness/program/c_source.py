@@ -34,7 +34,7 @@ PIECE = 100  # in each function that a longer one is divided into
 HELPERS = """\
 static inline double square(double x) { return x*x; }
 static inline double cube(double x) { return x*x*x; }
-static inline double sign(double x) { return (x > 0) - (x < 0); }"""
+static inline double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : x; }"""
 NOT_INLINE = """\
 #if !defined PIECE && defined __GNUC__
 #define PIECE static __attribute__((noinline))

@@ -8,9 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from exported import model_of_program
+from programs import program
+from refusing import failing
 from scipy.interpolate import CubicSpline
 
 from holonom.cli import holonom
+from holonom.failures import ErrorKind
 from holonom.program import c_source
 from holonom.program.identifiers import default_name, identifiers
 from holonom.program.model import scene_model
@@ -239,6 +243,25 @@ drive : holonomic_scene(system, control_law = [u = u0*table({list(map(list, rows
         u = np.empty(3)
         library.winch_law(t, np.array([3.0]), u)
         assert u == pytest.approx([3 * spline(t, rate) for rate in range(3)], rel=1e-13, abs=1e-13)
+
+
+def test_the_sign_of_what_is_no_number_is_none(tmp_path, c_compiler):
+    """It was zero, and dry friction at such a velocity that of rest."""
+    (tmp_path / "sign.c").write_text(c_source.c_source(program(["v"], [("w", ["Sign", "v"])], {"w": "w"})))
+    run("cc", "-std=c11", "-O2", "-shared", "-fPIC", "sign.c", "-o", "sign.so", "-lm", directory=tmp_path)
+    library = ctypes.CDLL(str(tmp_path / "sign.so"))
+    library.motion_batch.argtypes = [ctypes.c_size_t, *[DOUBLES] * 2]
+    v = np.array([-2, 0, 3, np.nan, np.nan, -0.0, 1e-320, -np.inf, np.nan])
+    found = np.empty(9)
+    library.motion_batch(9, v, found)
+    assert found == pytest.approx(np.sign(v), rel=0, abs=0, nan_ok=True)
+
+
+@pytest.mark.parametrize("name", ["string", "Math", "features", "m", "install"])
+def test_a_library_has_no_name_of_a_header_or_a_target(name):
+    """The C library's <string.h> was the scene's string.h then, and CMake refused a target m."""
+    with failing(ErrorKind.NAME_TAKEN, name):
+        c.write_model(model_of_program(program(["t"], [], {"w": "t"})), name)
 
 
 def test_names_that_c_does_not_know_stay_apart():

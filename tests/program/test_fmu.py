@@ -180,3 +180,13 @@ def test_a_start_without_a_state_nearby_is_an_error(tmp_path, c_compiler):
     unit.write_bytes(fmu.write_model(scene_model(tmp_path / "scene.mac", Request(None), ["l"], Limits()), "unit"))
     with pytest.raises(FMICallException, match="fmi3ExitInitializationMode"):
         fmpy.simulate_fmu(str(unit), fmi_type="ModelExchange", stop_time=1, start_values={"l": -1})
+
+
+def test_a_coordinate_may_be_named_as_the_time_is_elsewhere(write_scene, tmp_path, c_compiler):
+    text = LENGTHS.replace("[x, y]", "[x, y, time]").replace("constraints = [", "constraints = [time + ")
+    text = text.replace("m*(dot(x)^2", "m*(dot(time)^2 + dot(x)^2").replace("y = -7/10", "y = -7/10, time = 0")
+    unit = tmp_path / "unit.fmu"
+    unit.write_bytes(fmu.write_model(scene_model(write_scene(text), Request(None), [], Limits()), "unit"))
+    assert list(validate_fmu(str(unit))) == []
+    independent, *others = fmpy.read_model_description(str(unit)).modelVariables
+    assert (independent.name, others[2].name) == ("t", "time")

@@ -11,6 +11,7 @@ from dataclasses import replace
 from functools import partial
 from textwrap import fill, indent
 
+from ...failures import ErrorKind, HolonomError
 from ..c_source import (
     HELPERS,
     MANY,
@@ -32,6 +33,12 @@ from ..templates import filled, template
 
 GIVEN = "double t, const double *q, const double *v, const double *u, const double *p"
 UNKNOWN = "NAN"  # what has no value
+NOT_A_NAME = re.findall(
+    r"\w+",
+    "assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg stdatomic "
+    "stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype features strings "
+    "c m all clean help install package test",
+)  # headers of the C library, which NAME.h would hide, its parts that programs link, and targets of CMake
 ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted from one
 
 
@@ -52,9 +59,11 @@ def write_model(model: Model, name: str) -> dict[str, str]:
     Raises
     ------
     HolonomError
-        The name cannot name a C function.
+        The name cannot name a C function, or is that of a header of the C library or a target of CMake.
     """
     require_identifier(name)
+    if name.lower() in NOT_A_NAME:
+        raise HolonomError(ErrorKind.NAME_TAKEN, detail=name)
     written = {"name": name, "NAME": name.upper(), "title": comment_text(f"{model.system.title}: {model.title}")}
     return {
         f"{name}.h": filled(

@@ -119,7 +119,9 @@ def _variables(model: Model) -> Iterator[dict[str, str]]:
     """Attributes of every variable, in the order of the value references."""
     n, velocities = len(model.coordinates), [f"dot({name})" for name in model.coordinates]
     initial, moving = ("approx", names_used(model.constraints)) if model.constraints else ("exact", set())
-    yield {"name": "time", "causality": "independent", "variability": "continuous"}
+    named = (*model.coordinates, *model.controls, *model.parameters, *model.observed)
+    time = "t" if "time" in named else "time"  # nothing else is named t
+    yield {"name": time, "causality": "independent", "variability": "continuous"}
     for state in (*model.coordinates, *velocities):
         yield {"name": state, "causality": "output", "initial": initial, "start": model.start[state]}
     for history, value in zip(model.histories, _inputs_at_start(model), strict=True):
