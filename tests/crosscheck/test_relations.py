@@ -8,6 +8,7 @@ from holonom.crosscheck.relations import (
     list_of,
     read_exactly,
     residual_pairs,
+    shown,
     solved_for,
     sparse_entries,
 )
@@ -84,3 +85,8 @@ def test_more_or_fewer_relations_than_there_are_residuals_are_refused(relations)
 def test_a_decimal_is_read_as_the_fraction_that_it_is():
     (value,) = read_exactly(["x"], [Relation("x", {"num": "2.5e-1"})])
     assert value == sp.Rational(1, 4)
+
+
+@pytest.mark.parametrize(("left", "expected"), [("x", "x"), (["Subscript", "A", 1, 2], "A[1, 2]")])
+def test_a_left_side_is_shown_as_maxima_writes_it(left, expected):
+    assert shown(left) == expected

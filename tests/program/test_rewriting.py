@@ -4,8 +4,8 @@ from fractions import Fraction
 
 import pytest
 
-from holonom.program.motion_program import Call, Name, Operation
-from holonom.program.rewriting import ONE, ZERO, folded
+from holonom.program.motion_program import Call, Name, Operation, Program
+from holonom.program.rewriting import ONE, ZERO, folded, with_numbers
 
 X, Y = Name("x"), Name("y")
 
@@ -28,3 +28,11 @@ X, Y = Name("x"), Name("y")
 )
 def test_what_numbers_leave_of_an_operation(operation, arguments, expected):
     assert folded(operation, arguments) == expected
+
+
+def test_a_number_goes_through_the_assignments():
+    """Of z = x m and y z + x nothing is left but x, if m is zero."""
+    product = Call(Operation.MULTIPLY, (X, Name("m")))
+    output = Call(Operation.ADD, (Call(Operation.MULTIPLY, (Y, Name("z"))), X))
+    found = with_numbers(Program(None, "direct", "", ("x", "y", "m"), (("z", product),), {"out": output}), {"m": ZERO})
+    assert (found.inputs, found.assignments, found.outputs) == (("x", "y"), (), {"out": X})
