@@ -1,20 +1,23 @@
 ;;; Functions that are analytic while certain signs stay the same, written with these signs
 ;;;
-;;;     |g| = s g             max(a, b) = (a + b + s (a - b))/2        unit_step(g) = (1 + s)/2
-;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        if a < b then X else Y
-;;;                                                                     = (1 + s)/2 X + (1 - s)/2 Y
+;;;     |g| = s g             max(a, b) = (a + b + s (a - b))/2        hstep(g) = (1 + s)/2
+;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        unit_step(g) = (s + s^2)/2
 ;;;
-;;; where s is the sign of g, of a - b, of b - a, a symbol for each such switching function. They are in the order
-;;; of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g) stay.
+;;;     if g > 0 then X else Y = w X + (1 - w) Y,  w = (s + s^2)/2;  if g >= 0:  w = 1 + (s - s^2)/2
 ;;;
-;;; g may vanish identically for some values of the signs in it, as max(0, x) does where x < 0. There max(0, x) > 0 is
-;;; false and max(0, x) >= 0 is true: such a g is written as a sum over these values.
+;;; where s is the sign of g, of a - b, a symbol for each such switching function, whose square is 1. They are in the
+;;; order of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g)
+;;; stay, and w is 0 or 1 also where g is zero.
+;;;
+;;; g may vanish identically for some values of the signs in it, as max(0, x) does where x < 0. Such a g is written as a
+;;; sum over these values; its sign is 0 there.
 
 (in-package :maxima)
 
 (defvar *sign-prefix* '$sign)
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
 (defvar *written-openly* nil "Whether signs stay signum(g).")
+(defvar *at-zeros* nil "Whether signs are 0, too, so that their squares are not 1.")
 
 (defun $written_openly (expression) (let ((*written-openly* t)) (with-signs expression)))
 
@@ -33,11 +36,13 @@
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
               ((root-of-size-p e) (power (size-with-sign-met (with-signs (second (second e)))) (third e)))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
-              ((eq operator '%signum) (sign-or-tie (with-signs (second e)) 0))
+              ((eq operator '%signum) (sign-or-zero (with-signs (second e))))
+              ((power-of-sign-p e)
+               (let ((sign (with-signs (second e)))) (if (evenp (third e)) (square-of-sign sign) sign)))
               ((member operator '($max %max)) (extremum 1 (mapcar #'with-signs (cdr e))))
               ((member operator '($min %min)) (extremum -1 (mapcar #'with-signs (cdr e))))
-              ((member operator '($unit_step %unit_step $hstep %hstep))
-               (weight-of-sign (sign-or-tie (with-signs (second e)) -1)))
+              ((member operator '($hstep %hstep)) (weight-of-sign (sign-or-zero (with-signs (second e)))))
+              ((member operator '($unit_step %unit_step)) (weight-if-positive (with-signs (second e))))
               (t (let ((parts (mapcar #'with-signs (cdr e))))
                    (if (same-items-p parts (cdr e))
                        e
@@ -53,6 +58,10 @@
 (defun odd-root-p (e)
   "Whether e is g^(p/q) with an odd q."
   (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))) (oddp ($denom (third e)))))
+
+(defun power-of-sign-p (e)
+  (and (eq (caar e) 'mexpt) (consp (second e)) (eq (caar (second e)) '%signum)
+       (integerp (third e)) (plusp (third e))))
 
 (defun may-be-negative-p (g) (member ($csign g) '($neg $nz $pn $pnz)))
 
@@ -123,33 +132,43 @@
         ((atom condition) (refuse-condition condition))
         (t (let ((parts (cdr condition)))
              (case (caar condition)
-               (mgreaterp (comparison-weight (first parts) (second parts) -1))
-               (mgeqp (comparison-weight (first parts) (second parts) 1))
-               (mlessp (comparison-weight (second parts) (first parts) -1))
-               (mleqp (comparison-weight (second parts) (first parts) 1))
+               (mgreaterp (weight-if-greater (first parts) (second parts)))
+               (mlessp (weight-if-greater (second parts) (first parts)))
+               (mgeqp (sub 1 (weight-if-greater (second parts) (first parts))))
+               (mleqp (sub 1 (weight-if-greater (first parts) (second parts))))
                (mand (muln (mapcar #'condition-weight parts) nil))
                (mor (sub 1 (muln (mapcar #'(lambda (part) (sub 1 (condition-weight part))) parts) nil)))
                (mnot (sub 1 (condition-weight (first parts))))
                (t (refuse-condition condition)))))))
 
-(defun comparison-weight (greater less tie) (weight-of-sign (sign-or-tie (with-signs (sub greater less)) tie)))
+;;; The weights of a > b and of a < b; those of a >= b and of a <= b are 1 less these.
+(defun weight-if-greater (a b) (weight-if-positive (with-signs (sub a b))))
+(defun weight-if-positive (g) (let ((sign (sign-or-zero g))) (div (add sign (square-of-sign sign)) 2)))
 (defun refuse-condition (condition) ($refuse '$condition_without_comparison condition))
+
+(defun square-of-sign (sign) (without-squares (power sign 2)))
+
+(defun without-squares (e)
+  "A polynomial in the signs, linear in each, where the signs are 1 or -1."
+  (if (or *written-openly* *at-zeros*)
+      e
+      (reduce #'(lambda (e symbol) (maxima-substitute 1 (power symbol 2) e)) (signs-in e) :initial-value ($expand e))))
 
 (defparameter *most-signs* 6 "Within a function, so that it is looked at for all their values.")
 
-(defun sign-or-tie (g tie)
-  "The sign of g, or the tie where g vanishes identically."
+(defun sign-or-zero (g)
+  "The sign of g, 0 where g vanishes identically."
   (if *written-openly*
-      (let* ((*written-openly* nil) (*signs-met* nil) (sign (sign-or-tie-by-values (with-signs g) tie)))
+      (let* ((*written-openly* nil) (*at-zeros* t) (*signs-met* nil) (sign (sign-by-values (with-signs g))))
         (if sign (openly sign) (let ((*written-openly* t)) (sign-of-function g))))
-      (or (sign-or-tie-by-values g tie) (sign-of-function g))))
+      (or (sign-by-values g) (sign-of-function g))))
 
-(defun sign-or-tie-by-values (g tie)
+(defun sign-by-values (g)
   "nil where g vanishes for no values of the signs in it."
   (let ((signs (signs-in g)) ($ratprint nil))
-    (cond ((zerop1 g) tie)
+    (cond ((zerop1 g) 0)
           ((and signs (<= (length signs) *most-signs*) (vanishes-for-signs-p g signs))
-           ($ratsimp (sum-over-signs g signs tie))))))
+           ($ratsimp (without-squares (sum-over-signs g signs)))))))
 
 (defun signs-in (g) (remove-if #'(lambda (symbol) (free g symbol)) (mapcar #'car *signs-met*)))
 
@@ -158,16 +177,20 @@
       (some #'(lambda (value) (vanishes-for-signs-p (maxima-substitute value (first signs) g) (rest signs))) '(1 -1))
       (zerop1 ($ratsimp g))))
 
-(defun sum-over-signs (g signs tie)
-  "The sign of g, linear in each of the signs in it."
+(defun sum-over-signs (g signs)
+  "The sign of g by the values of the signs in it."
   (if signs
       (let ((symbol (first signs)))
         (addn (mapcar #'(lambda (value)
-                          (let ((part (sum-over-signs (maxima-substitute value symbol g) (rest signs) tie)))
-                            (mul (weight-of-sign (mul value symbol)) (maxima-substitute value symbol part))))
-                      '(1 -1))
+                          (let ((part (sum-over-signs (maxima-substitute value symbol g) (rest signs))))
+                            (mul (weight-of-value value symbol) (maxima-substitute value symbol part))))
+                      (if *at-zeros* '(1 -1 0) '(1 -1)))
               nil))
-      (let ((simplified ($ratsimp g))) (if (zerop1 simplified) tie (sign-of-function simplified)))))
+      (let ((simplified ($ratsimp g))) (if (zerop1 simplified) 0 (sign-of-function simplified)))))
+
+(defun weight-of-value (value sign)
+  "1 where a sign has the value, 0 where it has another one."
+  (let ((square (power sign 2))) (if (zerop1 value) (sub 1 square) (div (add (mul value sign) square) 2))))
 
 (defun openly (e)
   (dolist (met *signs-met* e)

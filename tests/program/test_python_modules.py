@@ -234,3 +234,15 @@ def test_names_cannot_end_what_they_stand_in():
     module = module_of(model_of_program(written), "numpy")
     assert (module.PARAMETERS, module.OUTPUTS["motion"]) == (('a"; */ \\',), ('"""',))
     assert module.motion(0, [], [], [2.0]) == [-2.0]
+
+
+@pytest.mark.parametrize(("condition", "holds"), [("<", 0), ("<=", 1), (">", 0), (">=", 1)])
+def test_at_a_tie_the_values_were_the_mean_of_both_branches(condition, holds, write_scene):
+    scene = write_scene(f"""load("holonom.mac")$
+    system : holonomic_system(coordinates = [x], controls = [u],
+      kinetic_energy = dot(x)^2/2, forces = [u + if x {condition} 0 then 10 else 20])$
+    s : holonomic_scene(system, control_law = [u = if t {condition} 1 then 2*t + abs(t - 1) else 5*t],
+      initial_state = [x = 1, dot(x) = 0], time_span = [0, 2])$""")
+    module = module_of(scene_model(scene, Request(), (), Limits()), "numpy")
+    assert np.ravel(module.law(1.0, ()))[:2].tolist() == ([2, 2] if holds else [5, 5])
+    assert np.ravel(module.motion(1.0, np.zeros(2), np.zeros(3), ())[0]).tolist() == [10 if holds else 20]
