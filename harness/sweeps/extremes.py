@@ -24,6 +24,7 @@ RESOLVED = 1e-10  # what the last coefficients of a step are of the largest wher
 PLACED = 1e-10  # of a step: how far rounding may move a zero
 MARGIN = 1e-9  # of the sizes of the coefficients: rounding of the bound, generously
 ROUNDING = 1e-13  # of the largest value that may be: no sign
+ENDED = 1e-10  # of the largest value: zero, where a zero ends the motion
 HALVINGS = 60  # of a step; below that numbers are too coarse to distinguish its parts
 
 Floats = NDArray[np.float64]
@@ -137,6 +138,28 @@ def first_zero(steps: Steps) -> Floats:
     found = _first_crossing(steps, parts, ROUNDING * sizes)
     of_largest = _first_crossing(steps, parts, ROUNDING * np.maximum.accumulate(sizes))
     return np.where((found == of_largest) | (np.isnan(found) & np.isnan(of_largest)), found, np.inf)
+
+
+def zeros_with_end(zeros: Floats, ends: Floats | float, last: Floats, sizes: Floats) -> Floats:
+    """Add zeros that end motions.
+
+    No step leads across them.
+
+    Parameters
+    ----------
+    zeros : ndarray
+        First zeros, nan without one.
+    ends : ndarray or float
+        Times at which motions end with a zero of some quantity, nan for other motions.
+    last, sizes : ndarray
+        Values of the quantities at the end, and their largest sizes.
+
+    Returns
+    -------
+    ndarray
+        The end where there was none, and the value at the end is zero to the accuracy of the zero.
+    """
+    return np.where(np.isnan(zeros) & (np.abs(last) <= ENDED * sizes), ends, zeros)
 
 
 def _first_crossing(steps: Steps, parts: "_Parts", rounding: Floats) -> Floats:

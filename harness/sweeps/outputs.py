@@ -4,7 +4,8 @@
     EXPR                a quantity at the end, at(EXPR, T) at a given time
     max(EXPR)           its largest value on the way. So min, mean, and max(abs(EXPR))
     d(NAME, P)          derivative at the end of a quantity by a parameter that varies, or by an initial value
-    zero(EXPR)          the first time after the initial time at which it crosses zero, empty where it does not
+    zero(EXPR)          the first time after the initial time at which it crosses zero or an event at its zero ends
+                        the motion, empty where it does not
     free                true if the multipliers stay at zero, condition (10) of free motion
     radius              radius of convergence of the initial motion, empty if uncertain by more than 5 %
     residual            how far the end is from the constraints. It is always recorded

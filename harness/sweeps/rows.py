@@ -42,7 +42,7 @@ from ..simulation.simulate import last_time
 from ..simulation.zeros import ZERO
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
-from .extremes import Steps, first_zero, largest, largest_size
+from .extremes import Steps, first_zero, largest, largest_size, zeros_with_end
 from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output
 from .quantities import along_motion, expressions_of, forces_of, require_known
 from .request import TOLERANCE
@@ -227,6 +227,9 @@ class RowMaker:
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
         seen = found.seen
         if self._crossing:
+            last = self._values(self._crossing, ends, at[self._end], values)
+            zeros, largest = np.split(seen[-2 * len(last) :], 2)
+            zeros[...] = zeros_with_end(zeros, np.where(ends < self._end, ends, np.nan), last, largest)
             seen = self._without_rounding(seen, self._crossing, states, values, nominal)
         self._keep_along(rows, done, seen[:, well])
         return there[~well]

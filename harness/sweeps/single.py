@@ -24,7 +24,7 @@ from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
 from ..simulation.simulate import integrate
-from .extremes import RESOLVED, Steps
+from .extremes import RESOLVED, Steps, zeros_with_end
 from .polynomials import LAST
 from .quantities import expressions_of, observed_names, solved_names
 
@@ -129,6 +129,7 @@ class _Look:
     ) -> None:
         self._values, self._along, self._stops, self._span = values, along, stops, span
         self._zeros, self._sides = np.full(zeros, np.nan), [{} for _ in range(zeros)]
+        self._sizes = np.zeros(zeros)  # largest values at the ends of steps
         self._taken: list[tuple] = []
         self._points: dict[float, Floats] = {}
         self._reached, self._mode = -np.inf, None
@@ -146,20 +147,27 @@ class _Look:
                 self._zeros[place] = np.inf
             else:
                 self._zeros[place] = np.nan if found is None else found.t
+        if len(self._zeros):
+            ends = np.array([step.start, step.end], dtype=float)
+            met = np.abs(self._at(ends, step.states(ends))[: len(self._zeros)])
+            self._sizes = np.max([self._sizes, *met.T], axis=0)
         here = np.array([stop for stop in self._stops if self._reached < stop <= step.end])
         if len(here):
-            self._points |= zip(here, self._recorded(here, step.states(here)).T, strict=True)
+            self._points |= zip(here, self._at(here, step.states(here))[len(self._zeros) :].T, strict=True)
         self._reached = step.end
 
     def motion(self, report: Report) -> SingleMotion:
         """Return the result of the motion."""
         end, state = float(report.t), np.array([*report.coordinates.values(), *report.velocities.values()])
-        last = self._recorded(np.array([end]), state[:, None])[:, 0]
+        crossing, last = np.split(self._at(np.array([end]), state[:, None])[:, 0], [len(self._zeros)])
         points = np.array([self._points[stop] if stop < end else last for stop in self._stops])
-        return SingleMotion(report, state, points, _steps(self._taken), self._zeros)
+        zero = end if report.ending is not None and report.ending.crossed is not None else np.nan
+        zeros = zeros_with_end(self._zeros, zero, crossing, self._sizes)
+        return SingleMotion(report, state, points, _steps(self._taken), zeros)
 
-    def _recorded(self, times: Floats, states: Floats) -> Floats:
-        return self._values(self._mode, times, states)[self._along + len(self._zeros) :]
+    def _at(self, times: Floats, states: Floats) -> Floats:
+        """Return quantities with zeros and those to record, shape (quantities, k)."""
+        return self._values(self._mode, times, states)[self._along :]
 
     def _crossings(self, mode: Mode, place: int) -> Events:
         """Return the zeros of a quantity in a mode."""

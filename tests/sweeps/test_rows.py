@@ -302,7 +302,7 @@ def test_what_switching_motions_need_is_compiled_once(rows_of, scenes, monkeypat
 
 
 def test_each_motion_ends_where_its_own_event_is(rows_of, scenes):
-    keep = "t,final,max(z),at(x,2),zero(z-1),mean(z)"
+    keep = "t,final,max(z),at(x,2),zero(z-1),zero(2*z),mean(z)"
     found = columns(rows_of(scenes / "thrown.mac", keep, "g=1:10:10").table(0, 10))
     g, end = found["g"], np.minimum(10 / found["g"], 2.5)
     crossing = (5 - np.sqrt(25 - 2 * g)) / g
@@ -317,15 +317,19 @@ def test_each_motion_ends_where_its_own_event_is(rows_of, scenes):
     }
     for name, truth in truths.items():
         assert found[name] == pytest.approx(truth, rel=1e-11, abs=1e-11, nan_ok=True), name
+    assert list(found["zero(2*z)"][g > 4]) == list(found["t"][g > 4])
+    assert np.isnan(found["zero(2*z)"][g < 4]).all()
     assert (found["status"] == Status.OK).all()
 
 
 def test_a_motion_followed_by_itself_ends_at_its_event_too(rows_of, scenes):
-    found = columns(rows_of(scenes / "skidding.mac", "t,dot(x),at(x,1)", "mu=1/2:3/2:2").table(0, 2))
+    keep = "t,dot(x),at(x,1),zero(x-1/4),zero(x-2)"
+    found = columns(rows_of(scenes / "skidding.mac", keep, "mu=1/2:3/2:2").table(0, 2))
     speed = np.sqrt(1 - found["mu"] / 2)  # at x = 1/4
     assert found["dot(x)"] == pytest.approx(speed, rel=1e-10)
     assert found["t"] == pytest.approx((1 - speed) / found["mu"], rel=1e-10)
-    assert np.isnan(found["at(x,1)"]).all()
+    assert list(found["zero(x-1/4)"]) == list(found["t"])
+    assert np.isnan([found["at(x,1)"], found["zero(x-2)"]]).all()
 
 
 def test_a_push_that_ends_at_a_swept_time_leaves_the_oscillation_of_two_steps(rows_of, scenes):
