@@ -174,7 +174,7 @@ def _redundancy(program: Program) -> str:
 def comment_text(text: str) -> str:
     """Escape text for a comment, by JSON's escapes without the quotes.
 
-    The result cannot end the comment.
+    The result cannot begin or end a comment.
 
     Parameters
     ----------
@@ -184,9 +184,9 @@ def comment_text(text: str) -> str:
     Returns
     -------
     str
-        Text without characters beyond ASCII and without the end of a comment.
+        Text without characters beyond ASCII and without begin or end of a comment.
     """
-    return json.dumps(text)[1:-1].replace("*/", "*\\/")
+    return json.dumps(text)[1:-1].replace("*/", "*\\/").replace("/*", "/\\*")
 
 
 def _table(program: Program) -> Iterator[str]:

@@ -245,6 +245,12 @@ drive : holonomic_scene(system, control_law = [u = u0*table({list(map(list, rows
         assert u == pytest.approx([3 * spline(t, rate) for rate in range(3)], rel=1e-13, abs=1e-13)
 
 
+def test_a_title_that_begins_a_comment_is_no_warning(tmp_path, c_compiler):
+    (tmp_path / "title.c").write_text(c_source.c_source(program(["/*/ */*"], [], {"/*": "/*/ */*"})))
+    compiled = run("cc", "-std=c11", *STRICT, "-c", "title.c", directory=tmp_path)
+    assert (compiled.returncode, compiled.stderr) == (0, "")
+
+
 def test_the_sign_of_what_is_no_number_is_none(tmp_path, c_compiler):
     """It was zero, and dry friction at such a velocity that of rest."""
     (tmp_path / "sign.c").write_text(c_source.c_source(program(["v"], [("w", ["Sign", "v"])], {"w": "w"})))

@@ -3,6 +3,7 @@
 import pytest
 from exported import POINTS, lift_by_a_table
 from particle import PARTICLE
+from programs import program
 
 from holonom.program import targets
 from holonom.program.forms import MotionProgram
@@ -38,6 +39,14 @@ def test_places_of_a_template_are_filled_and_nothing_else():
     assert "@{" in template("library.h")
     assert "@" not in filled("CMakeLists.txt", name="crane")
     assert "${CMAKE_CURRENT_SOURCE_DIR}" in filled("CMakeLists.txt", name="crane")
+
+
+def test_names_are_themselves_in_python():
+    """Those of more than 16 bits were two halves, which cannot be printed."""
+    names = ["t", "𝜃", "θ", "*/", "\\'\"\n"]
+    module: dict = {}
+    exec(target("python").write(program(names, [], dict(zip(names, names, strict=True)))), module)
+    assert module["INPUTS"] == module["OUTPUTS"] == tuple(names)
 
 
 @pytest.mark.parametrize("name", ["c", "matlab", "python_numpy", "python_jax"])

@@ -52,7 +52,7 @@ def _names(program: Program) -> Iterator[str]:
 
 
 def _listed(names: tuple[str, ...]) -> str:
-    return "\n".join(f'    "{comment_text(name)}",' for name in names)
+    return "\n".join(f"    {name!a}," for name in names)
 
 
 def _number(value: Fraction) -> Formula:
