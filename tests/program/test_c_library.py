@@ -217,6 +217,27 @@ def test_what_cannot_be_projected_is_left_as_it_was(pendulum):
     assert v.tolist() == [0.4, 0.3]
 
 
+@pytest.mark.parametrize("far", [1.0, 1e9])
+def test_a_coordinate_elsewhere_is_no_measure_for_an_angle(write_scene, tmp_path, c_compiler, far):
+    """Where sin(a) = 3/2 was to hold, the angle counted as found, for it is small beside 1e9."""
+    file = write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, a, y], parameters = [s], kinetic_energy = dot(x)^2 + dot(a)^2 + dot(y)^2,
+  potential_energy = x, constraints = [sin(a) - s, y - 1 + cos(a)])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], parameter_values = [s = 0],
+  initial_guess = [a = 0, y = 0, dot(a) = 0, dot(y) = 0])$""")
+    directory = write_library(tmp_path / "library", file, "turn", "s")
+    run("cc", "-std=c11", "-shared", "-fPIC", "turn.c", "-lm", "-o", "turn.so", directory=directory)
+    project = ctypes.CDLL(str(directory / "turn.so")).turn_project
+    project.argtypes = [ctypes.c_double, *[DOUBLES] * 4]
+    for s in (0.9, 1e-3, 1e-6, 1e-9, 0.0):
+        q, v = np.array([far, 1.1 * s, 0.0]), np.zeros(3)
+        assert project(0.0, q, v, np.zeros(0), np.array([s])) == 0
+        assert q == pytest.approx([far, np.arcsin(s), 1 - np.sqrt(1 - s * s)], rel=1e-13, abs=1e-15)
+    q, v = np.array([far, 0.5, 0.1]), np.zeros(3)
+    assert project(0.0, q, v, np.zeros(0), np.array([1.5])) == 1
+    assert q.tolist() == [far, 0.5, 0.1]
+
+
 def test_the_law_and_the_values_are_those_of_the_scene(pendulum):
     p, u = np.empty(2), np.full(3, np.nan)
     pendulum.bob_values(p)

@@ -28,7 +28,7 @@ from ..c_source import (
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
 from ..motion_program import Program
-from ..rewriting import computing
+from ..rewriting import computing, with_factors
 from ..templates import filled, template
 
 GIVEN = "double t, const double *q, const double *v, const double *u, const double *p"
@@ -39,6 +39,7 @@ NOT_A_NAME = re.findall(
     "stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype features strings "
     "c m all clean help install package test",
 )  # headers of the C library, which NAME.h would hide, its parts that programs link, and targets of CMake
+FACTORS = [1 + (2 * (0.618034 * k % 1) - 1) * 2**-20 for k in range(61)]  # rounding errors to 20 bits
 ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted from one
 
 
@@ -133,6 +134,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
     functions = {
         "motion": one("motion", "a lambda", model.motion, _results(model, "{array}[{index}]")),
         "residual": _residual(model, one),
+        "rough": _rough_residual(model, one),
         "jacobian": _jacobian(model, one),
         "servo": _found("servo", model.servo, one, "found"),
         "outputs": _found("observe", model.outputs, one, "y"),
@@ -235,6 +237,15 @@ def _residual(model: Model, function: Callable[..., SourceParts]) -> SourceParts
     g = range(1, len(model.multipliers) + 1)
     places = {f"residual[{b}]": f"f[{b - 1}]" for b in g} | {f"residual_rate[{b}]": f"rate[{b - 1}]" for b in g}
     return _computed("residual", "f rate", model.constraints, places, function)
+
+
+def _rough_residual(model: Model, function: Callable[..., SourceParts]) -> SourceParts:
+    """Return the body of a function that computes residuals to 20 bits."""
+    places = {f"residual[{b}]": f"f[{b - 1}]" for b in range(1, len(model.multipliers) + 1)}
+    factors = [f"factor[{k}]" for k in range(len(FACTORS))]
+    rough = model.constraints and with_factors(computing(model.constraints, places), factors)
+    inputs = [*_places(model, "{array}[{index}]", "t"), *map(repr, FACTORS)]
+    return _computed("rough_residual", "f", rough, places, partial(function, inputs=inputs))
 
 
 def _found(name: str, program: Program | None, function: Callable[..., SourceParts], array: str) -> SourceParts:

@@ -2,7 +2,6 @@
 
 #include "@{name}.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -78,6 +77,12 @@ static void corrections(double t, const double *q, const double *v, const double
 @{corrections}
 }
 
+/* Residuals, as if rounded to 20 bits: how far they are from the others, is their uncertainty with 20 bits. */
+static void rough_residual(double t, const double *q, const double *v, const double *u, const double *p, double *f)
+{
+@{rough}
+}
+
 static double size_of(const double *x)
 {
     double squares = 0;
@@ -87,7 +92,7 @@ static double size_of(const double *x)
 
 int @{name}_project(double t, double *q, double *v, const double *u, const double *p)
 {
-    double x[@{n}], dq[@{n}], dv[@{n}], step = INFINITY;
+    double x[@{n}], dq[@{n}], dv[@{n}], f[@{g} + 1], rate[@{g} + 1], rough[@{g} + 1], step = INFINITY;
     memcpy(x, q, sizeof x);
     corrections(t, x, v, u, p, dq, dv);
     for (double next = size_of(dq); next < step/2; next = size_of(dq)) { /* until steps are rounding */
@@ -95,7 +100,11 @@ int @{name}_project(double t, double *q, double *v, const double *u, const doubl
         for (int s = 0; s < @{n}; s++) x[s] += dq[s];
         corrections(t, x, v, u, p, dq, dv);
     }
-    if (!(step <= sqrt(DBL_EPSILON)*size_of(x)) || !isfinite(size_of(dv))) return 1;
+    @{name}_residual(t, x, v, u, p, f, rate);
+    rough_residual(t, x, v, u, p, rough);
+    for (int b = 0; b < @{g}; b++)
+        if (!(fabs(f[b]) <= 1e-5*fabs(rough[b] - f[b]))) return 1; /* rounding to 53 bits is 2^-33 of this */
+    if (!isfinite(size_of(dv))) return 1;
     for (int s = 0; s < @{n}; s++) q[s] = x[s], v[s] += dv[s];
     return 0;
 }
