@@ -221,8 +221,7 @@ def _integrated(
 
 def _present(problem: "MotionProblem", report: "Report", simulation: "Simulation | None", files: _Files) -> None:
     """Write the JSON document, the table and the reasons of a failed accuracy check."""
-    from ..display.motion import HINT_OF_ROOT, rejection, show_report
-    from ..simulation.accuracy_check import has_root_of
+    from ..display.motion import rejection, show_report
     from ..simulation.output import report_document, simulation_document
 
     if files.json is not None:
@@ -234,8 +233,6 @@ def _present(problem: "MotionProblem", report: "Report", simulation: "Simulation
         show_report(make_console(), problem.scene, problem.title, report)
     for violation in report.violations:
         click.echo(rejection(violation), err=True)
-    if report.violations and has_root_of(problem.matrices, problem.state[len(problem.coordinates) :]):
-        click.echo(HINT_OF_ROOT, err=True)
 
 
 def _names_of(curves: str) -> list[str]:

@@ -221,13 +221,6 @@ def _passed(outcome: str) -> str:
     return {"sliding": "reached, and the motion stays on it", "released": "left again"}.get(outcome, outcome)
 
 
-HINT_OF_ROOT = (
-    "holonom: warning: a force contains the square root of a function of the velocities. If the function vanishes, "
-    "as in v/sqrt(v^2 + w^2) at rest, steps miss the jump of the force. If the motion is along a line, "
-    "write signum(v) for it, whose zeros end a step."
-)
-
-
 def rejection(violation: "AccuracyViolation") -> str:
     """Return the message for a simulation that failed the accuracy check.
 

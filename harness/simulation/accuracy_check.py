@@ -177,7 +177,7 @@ def has_root_of(program: Program, names: Collection[str]) -> bool:
     -------
     bool
     """
-    return _contains(program, set(names), _is_root)
+    return _contains(program, set(names), is_root)
 
 
 def _contains(program: Program, moving: set[str], sought: Callable[[Call], bool]) -> bool:
@@ -189,7 +189,18 @@ def _contains(program: Program, moving: set[str], sought: Callable[[Call], bool]
     return False
 
 
-def _is_root(call: Call) -> bool:
+def is_root(call: Call) -> bool:
+    """Return True if an operation is a root.
+
+    Parameters
+    ----------
+    call : Call
+        The operation.
+
+    Returns
+    -------
+    bool
+    """
     exponent = call.arguments[1] if call.operation is Operation.POWER else None
     return call.operation is Operation.SQRT or (isinstance(exponent, Fraction) and exponent.denominator > 1)
 

@@ -56,9 +56,23 @@ class DefectControl:
         if parts > 1:
             for first in range(0, parts, AT_ONCE):
                 edges = step.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
-                self.error = float(np.maximum(self.error, self._error_between(edges, step)))  # nan stays
+                self.error = float(np.maximum(self.error, self.between(edges, step)))  # nan stays
 
-    def _error_between(self, edges: Numbers, step: Step) -> float:
+    def between(self, edges: Numbers, step: Step) -> float:
+        """Return the largest error of the velocities in parts of a step.
+
+        Parameters
+        ----------
+        edges : ndarray, shape (k,)
+            Times between which the parts are.
+        step : Step
+            A step with its mode.
+
+        Returns
+        -------
+        float
+            As `error`.
+        """
         half = (edges[1:] - edges[:-1]) / 2
         times = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
         accelerations = step.mode.engine.solutions(times, step.states(times)).accelerations

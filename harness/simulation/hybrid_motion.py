@@ -59,6 +59,9 @@ NEAR = 1e-6  # share of its changes that a determinant has at a paradox, towards
 NOT_UNIQUE = translatable(
     "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
 )
+ROOT_OF_ZERO = translatable(
+    "a root of zero leaves open how the motion continues (in a line, write abs(v) for the root of v^2)"
+)
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
 
@@ -203,6 +206,7 @@ class HybridMotion:
             The motion cannot be continued so far.
         """
         looked_at = dense or self.problem.switching or self.problem.ends.released or controls_may_fail(self.problem)
+        looked_at = looked_at or self.mode.radicands
         while self.time != until:
             stop = self._next_stop(until)
             if looked_at:
@@ -233,9 +237,14 @@ class HybridMotion:
             release = self._first_release(step)
             if release is not None:
                 step = step._replace(end=release.t)
+            lost = None if step.mode.radicands is None else step.mode.radicands.lost(step)
+            if lost is not None:
+                step = step._replace(end=lost)
             if step.start != step.end:
                 yield step._replace(impulse=self._impulse)
                 self._impulse = self._zero
+            if lost is not None:
+                self._reject(lost, ROOT_OF_ZERO)
             if release is not None:
                 self._release(release, step)
                 break

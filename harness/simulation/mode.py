@@ -33,6 +33,7 @@ from .hard_cases import MotionState, dependence
 from .inputs import Inputs
 from .matrices import MotionMatrices, start_of
 from .place_and_reason import place_and_reason
+from .radicands import Radicands, radicands
 from .request import FINAL_STATE_ALONE, SimulationRequest
 from .time_dependence import TimeDependence, time_dependence
 from .time_events import TimeEvent
@@ -307,6 +308,14 @@ class Mode:
         if not controls_may_fail(self.problem):
             return None
         return ControlMatrix(self.problem, self.precision, self.span)
+
+    @cached_property
+    def radicands(self) -> Radicands | None:
+        """The arguments of roots that may touch zero, None without any."""
+        program = self.whole.once("radicands", self.whole.matrices, lambda: radicands(self.whole))
+        if program is None:
+            return None
+        return Radicands(self.whole, self.pattern, program, self.precision, self.span, self.engine.tol)
 
     def require_way_on(self, until: Any) -> None:
         """Reject a vanishing constraint gradient or a nonsmooth expression of time.

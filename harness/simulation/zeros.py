@@ -251,7 +251,7 @@ class SignedFunctions(ABC):
         if places.size:
             around = PLACES[places[0] + np.array([-1, 0])]
         else:
-            around = _narrow_dip(coefficients - touched * CONSTANT, between, begin, end)
+            around = narrow_dip(coefficients - touched * CONSTANT, between, begin, end)
         if around is None:
             return None
         times, found = self._samples(step, around)
@@ -304,11 +304,23 @@ def _least_after(values: Numbers, place: int) -> int:
     return place
 
 
-def _narrow_dip(coefficients: Vector, between: Vector, begin: float, end: float) -> Vector | None:
-    """Return a place and a later one at which a polynomial is negative.
+def narrow_dip(coefficients: Vector, between: Vector, begin: float, end: float) -> Vector | None:
+    """Return a place and a later one, the first minimum of a polynomial below zero.
 
-    It is the first minimum below zero. No sample of the polynomial, shape (FINE + 1,), is negative. Newton's method for
-    the slope refines each minimum.
+    Newton's method for the slope refines each minimum.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (DEGREE + 1,)
+        Of Chebyshev polynomials.
+    between : ndarray, shape (FINE + 1,)
+        Samples of the polynomial, or of one that differs by a constant.
+    begin, end : float
+        Places between which the minimum is.
+
+    Returns
+    -------
+    ndarray, shape (2,), or None
     """
     slope = chebyshev.chebder(coefficients)
     bend = chebyshev.chebder(slope)

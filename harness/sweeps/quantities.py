@@ -7,6 +7,7 @@ from ..language import translatable
 from ..program.heyoka_function import heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, Program, names_in
+from ..simulation.radicands import radicands
 from .outputs import not_an_output
 
 Known = Mapping[str, Any]
@@ -85,11 +86,19 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
     Returns
     -------
     dict of str to object
-        Those of `known`, and accelerations, multipliers, energy, matrices, controls, outputs and events, by name.
+        Those of `known`, and accelerations, multipliers, energy, matrices, controls, outputs, events and arguments of
+        roots, by name.
     """
     inputs = {**known, **zero_multipliers(problem.multipliers, 0.0)}
     solved = {**known, **heyoka_expressions(problem.motion, inputs)}
-    others = (problem.energy, problem.matrices, problem.controls, problem.outputs, problem.ends.events)
+    others = (
+        problem.energy,
+        problem.matrices,
+        problem.controls,
+        problem.outputs,
+        problem.ends.events,
+        radicands(problem),
+    )
     found = [heyoka_expressions(program, solved) for program in others if program is not None]
     return solved | {name: value for results in found for name, value in results.items()}
 

@@ -36,6 +36,7 @@ from ..simulation.nominal import (
     nominal_of,
     with_nominal,
 )
+from ..simulation.radicands import radicands
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
@@ -54,6 +55,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 CORNERED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
+TOUCHED = 1e-9  # of the largest argument of a root: the motion is followed by itself, to see whether it is zero
 GROUP = 10_000  # rows in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep
@@ -112,6 +114,8 @@ class RowMaker:
         self._free = forces_of(problem) if free else ([], [])
         self._along = [*(output.quantity for output in self._extremes), *self._free[0], *self._free[1]]
         self._crossing = [output.quantity for output in self._zeros]
+        roots = radicands(problem)
+        self._radicands = [] if roots is None else [Name(name) for name in roots.outputs]
         self._seen_outputs = [*self._extremes, *(each for each in plan.outputs if each.kind is Kind.FREE), *self._zeros]
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
@@ -225,7 +229,7 @@ class RowMaker:
         }
         rows.residual[done] = residual[well]
         self._keep(rows, done, ends[well], at[self._end][:, well], points)
-        seen = found.seen
+        seen = found.seen[len(self._radicands) :]
         if self._crossing:
             last = self._values(self._crossing, ends, at[self._end], values)
             zeros, largest = np.split(seen[-2 * len(last) :], 2)
@@ -308,9 +312,13 @@ class RowMaker:
             rows.record(output.text, there, numbers, there_is=(output.kind is not Kind.ZERO) | ~np.isnan(numbers))
 
     def _look(self, steps: list[Steps]) -> Floats:
-        """Return the numbers made of quantities, infinite if polynomials do not decide."""
-        made = [np.where(resolved, number, np.inf) for number, resolved in self._numbers(steps[: len(self._along)])]
-        return np.array([*made, *_zeros(steps[len(self._along) :])])
+        """Return the numbers made of quantities, infinite if polynomials do not decide.
+
+        Before them come the least arguments of roots, infinite if they touch zero.
+        """
+        roots, along = steps[: len(self._radicands)], steps[len(self._radicands) :]
+        made = [np.where(resolved, number, np.inf) for number, resolved in self._numbers(along[: len(self._along)])]
+        return np.array([*map(_least_or_zero, roots), *made, *_zeros(along[len(self._along) :])])
 
     def _numbers(self, steps: list[Steps]) -> Iterator[tuple[Floats, NDArray[np.bool_]]]:
         """Yield the largest, least and mean values, each with True where it is resolved.
@@ -367,7 +375,7 @@ class RowMaker:
 
     @cached_property
     def _engine(self) -> BatchEngine:
-        return self._looking_at([*self._along, *self._crossing], self._look)
+        return self._looking_at([*self._radicands, *self._along, *self._crossing], self._look)
 
     @cached_property
     def _ending_engine(self) -> BatchEngine:
@@ -491,6 +499,12 @@ def _made(kind: Kind, along: Steps) -> Floats:
             return largest_size(along)
         case _:
             return _mean(along)
+
+
+def _least_or_zero(along: Steps) -> Floats:
+    """Return the least value of a positive quantity, infinite if it may touch zero."""
+    least = -largest(along.negative())
+    return np.where(along.resolved() & (least > TOUCHED * largest_size(along)), least, np.inf)
 
 
 def _zeros(steps: Sequence[Steps]) -> list[Floats]:

@@ -32,6 +32,7 @@ motion : holonomic_scene(system, parameter_values = [k = 1], initial_state = [{s
 
 PLANE = "(dot(x)^2 + dot(y)^2)/2"
 LEDGE = "k*atan(10^13*(x - 1/2))"  # too steep for the Taylor coefficients of a step that begins before it
+FRICTION = ", ".join(f"-k*{v}/sqrt(dot(x)^2 + dot(y)^2)" for v in ("dot(x)", "dot(y)"))
 OK, INACCURATE, BROKEN_OFF = Status.OK, Status.INACCURATE, Status.BROKEN_OFF
 SCENES = {
     "a ledge": (
@@ -45,6 +46,10 @@ SCENES = {
     "nearly a collision": (
         scene("x, y", PLANE, "-1/sqrt(x^2 + y^2)", "x = 1, y = 0, dot(x) = 0, dot(y) = k", "4"),
         ("1e-7:1:3", [BROKEN_OFF, OK, OK]),
+    ),
+    "friction in a plane": (
+        scene("x, y", PLANE, "0", "x = 0, y = 0, dot(x) = 3, dot(y) = 4", "4", f"forces = [{FRICTION}]"),
+        ("1:63/50:3", [OK, OK, BROKEN_OFF]),
     ),
 }
 LONG = {

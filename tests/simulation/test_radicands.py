@@ -1,0 +1,68 @@
+"""Motions through zeros of the arguments of roots, against motions in a line with |x|."""
+
+import pytest
+from refusing import failing
+
+import holonom
+from holonom.failures import ErrorKind
+from holonom.program.motion_problem import motion_problem
+from holonom.program.request import Request
+from holonom.sandbox import Limits
+from holonom.simulation.radicands import radicands
+
+PLANE = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [k, d], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  {effects})$
+motion : holonomic_scene(system, parameter_values = [k = 2, d = 0], initial_state = [{start}], time_span = [0, 4])$
+"""
+SPEED = "sqrt((dot(x) - k*d)^2 + dot(y)^2)"
+FRICTION = f"forces = [-k*(dot(x) - k*d)/{SPEED}, -k*dot(y)/{SPEED}]"
+SPRING = "potential_energy = k*(sqrt(x^2 + (y - d)^2) - 1)^2/4"
+THROWN = "x = 0, y = 0, dot(x) = 3, dot(y) = 4"
+DRAWN = "x = 3/2, y = 0, dot(x) = -3, dot(y) = 0"
+
+
+def plane(effects: str, start: str) -> holonom.Scene:
+    return holonom.system(PLANE.format(effects=effects, start=start))
+
+
+@pytest.mark.parametrize(
+    ("friction", "options", "stop"),
+    [
+        (2, {}, 2.5),  # a power of two of the time span
+        (1.26, {}, 5 / 1.26),  # behind the last samples of the only step
+        (1.26, {"tol": 1e-6}, 5 / 1.26),
+        (1.26, {"precision": "quadruple"}, 5 / 1.26),
+        (2, {"d": 0.5}, 5**0.5),  # on a belt
+    ],
+)
+def test_a_body_that_friction_in_a_plane_stops_was_driven_backwards(friction, options, stop):
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
+        plane(FRICTION, THROWN).simulate(k=friction, engine="taylor", **options)
+    assert float(stopped.value.detail.split(",")[0]) == pytest.approx(stop, rel=1e-8)
+
+
+def test_a_spring_of_no_length_pushed_on_to_the_same_side():
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
+        plane(SPRING, DRAWN).simulate(engine="taylor")
+    assert float(stopped.value.detail.split(",")[0]) == pytest.approx(0.5001791778, rel=1e-9)
+
+
+@pytest.mark.parametrize("distance", [1e-9, 1e-6])
+def test_a_spring_passes_its_end_nearby(distance):
+    """Truth: the line, where the spring has the length |x|."""
+    line = plane("potential_energy = k*(abs(x) - 1)^2/4 + (y - d)^2/2", DRAWN).simulate()
+    near = plane(SPRING, DRAWN).simulate(d=distance)
+    assert near.report.trusted
+    assert near.report.coordinates["x"] == pytest.approx(line.report.coordinates["x"], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("effects", "count"),
+    [(SPRING, 1), (FRICTION, 1), ("forces = [k*max(0, -x)^(3/2), -d*y]", 0), ("forces = [-d*x, sqrt(1 + k)]", 0)],
+)
+def test_roots_of_the_state_without_signs_are_examined(effects, count, tmp_path):
+    file = tmp_path / "plane.mac"
+    file.write_text(PLANE.format(effects=effects, start=THROWN))
+    found = radicands(motion_problem(file, Request(), Limits(), 40))
+    assert (0 if found is None else len(found.outputs)) == count
