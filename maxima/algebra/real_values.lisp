@@ -5,7 +5,8 @@
 (in-package :maxima)
 
 (defvar *unreal-symbols* '($%i $inf $minf $infinity $und $ind $unknown t nil))
-(defvar *unreal-operators* '(mlist $matrix $set mequal mnotequal mlessp mleqp mgreaterp mgeqp mand mor mnot lambda))
+(defvar *unreal-operators* '(mlist $matrix $set mequal mnotequal mlessp mleqp mgreaterp mgeqp mand mor mnot lambda
+                             $body $marked $connection))
 
 (defvar *rounded-imaginary-part* 1d-20 "What rounding leaves of a zero imaginary part.")
 
