@@ -1,6 +1,7 @@
 """A scene as a library in C11: clean, linkable, and with the numbers that the closed forms have."""
 
 import ctypes
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -289,6 +290,16 @@ def test_a_library_has_no_name_of_a_header_or_a_target(name):
     """The C library's <string.h> was the scene's string.h then, and CMake refused a target m."""
     with failing(ErrorKind.NAME_TAKEN, name):
         c.write_model(model_of_program(program(["t"], [], {"w": "t"})), name)
+
+
+def test_no_name_of_a_library_makes_a_function_one_that_it_has(tmp_path):
+    """A library named rough had a function rough_residual, and another one."""
+    text = (write_library(tmp_path, "pendulum.mac", "bob") / "bob.c").read_text()
+    public = set(re.findall(r"^(?:void|int|const char \*const) bob(_\w+)", text, re.MULTILINE))
+    own = set(re.findall(r"^static (?:inline )?(?:double|void|lanes) (\w+)\(", text, re.MULTILINE))
+    assert {"_motion", "_project", "_outputs"} < public
+    assert {"size_of", "square", "lanes_at"} < own
+    assert [(name, end) for name in own for end in public if name.endswith(end)] == []
 
 
 def test_names_that_c_does_not_know_stay_apart():

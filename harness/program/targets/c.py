@@ -245,7 +245,7 @@ def _rough_residual(model: Model, function: Callable[..., SourceParts]) -> Sourc
     factors = [f"factor[{k}]" for k in range(len(FACTORS))]
     rough = model.constraints and with_factors(computing(model.constraints, places), factors)
     inputs = [*_places(model, "{array}[{index}]", "t"), *map(repr, FACTORS)]
-    return _computed("rough_residual", "f", rough, places, partial(function, inputs=inputs))
+    return _computed("roughly", "f", rough, places, partial(function, inputs=inputs))
 
 
 def _found(name: str, program: Program | None, function: Callable[..., SourceParts], array: str) -> SourceParts:

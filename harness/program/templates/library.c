@@ -78,7 +78,7 @@ static void corrections(double t, const double *q, const double *v, const double
 }
 
 /* Residuals, as if rounded to 20 bits: how far they are from the others, is their uncertainty with 20 bits. */
-static void rough_residual(double t, const double *q, const double *v, const double *u, const double *p, double *f)
+static void roughly(double t, const double *q, const double *v, const double *u, const double *p, double *f)
 {
 @{rough}
 }
@@ -101,7 +101,7 @@ int @{name}_project(double t, double *q, double *v, const double *u, const doubl
         corrections(t, x, v, u, p, dq, dv);
     }
     @{name}_residual(t, x, v, u, p, f, rate);
-    rough_residual(t, x, v, u, p, rough);
+    roughly(t, x, v, u, p, rough);
     for (int b = 0; b < @{g}; b++)
         if (!(fabs(f[b]) <= 1e-5*fabs(rough[b] - f[b]))) return 1; /* rounding to 53 bits is 2^-33 of this */
     if (!isfinite(size_of(dv))) return 1;
