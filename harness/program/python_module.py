@@ -7,6 +7,7 @@ from textwrap import fill, indent
 from .c_source import ONE, Target, comment_text, title_of_model
 from .model import Model
 from .model_functions import ModelFunction, body, called, given, has_law, model_functions
+from .rewriting import with_joined_roots
 from .templates import filled
 
 PYTHON = Target("{name} = {formula}", ONE.arithmetic)
@@ -36,6 +37,7 @@ class Package:
     elsewhere: Mapping[str, str] = field(default_factory=dict)  # functions that another module has
     renamed: Mapping[str, str] = field(default_factory=dict)  # functions that it calls otherwise than C
     own: frozenset[str] = frozenset({"cube"})  # functions that the module itself has
+    differentiates: bool = False  # whether its users do
 
 
 def module_text(model: Model, name: str, package: Package, ending: str = "") -> str:
@@ -57,6 +59,8 @@ def module_text(model: Model, name: str, package: Package, ending: str = "") -> 
         Source text of the module.
     """
     functions = list(model_functions(model))
+    if package.differentiates:
+        functions = [each._replace(program=with_joined_roots(each.program)) for each in functions]
     text = "\n\n\n".join(_functions(model, functions))
     support = [package.support.rstrip(), CUBE if "cube" in called(text) else "", _tables(model)]
     return filled(

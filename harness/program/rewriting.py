@@ -285,3 +285,81 @@ def with_factors(program: Program, factors: Sequence[str]) -> Program:
 
     assignments = tuple((name, written(each)) for name, each in program.assignments)
     return replace(program, inputs=(*program.inputs, *factors), assignments=assignments)
+
+
+def with_joined_roots(program: Program) -> Program:
+    """Return a program with a^(n + 1/2) for products of a^n and sqrt(a).
+
+    It has a derivative at zero, where that of sqrt(a) is infinite.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    Program
+    """
+    roots: dict[str, Expression] = {}  # by the names of the assignments that are one, perhaps with a divisor
+    assignments = []
+    for name, expression in program.assignments:
+        written = _with_joined_roots(expression, roots)
+        if _root_of(written) is not None:
+            roots[name] = written
+        assignments.append((name, written))
+    return computing(replace(program, assignments=tuple(assignments)), program.outputs)
+
+
+def _with_joined_roots(expression: Expression, roots: Mapping[str, Expression]) -> Expression:
+    match expression:
+        case Call(Operation.MULTIPLY):
+            return _joined([_with_joined_roots(each, roots) for each in _factors(expression)], roots)
+        case Call(operation, arguments):
+            return Call(operation, tuple(_with_joined_roots(each, roots) for each in arguments))
+    return expression
+
+
+def _factors(expression: Expression) -> list[Expression]:
+    match expression:
+        case Call(Operation.MULTIPLY, arguments):
+            return [factor for argument in arguments for factor in _factors(argument)]
+    return [expression]
+
+
+def _root_of(expression: Expression) -> Expression | None:
+    """Return a of sqrt(a) or sqrt(a)/b, or None."""
+    match expression:
+        case Call(Operation.SQRT, (Name() | Call() as base,)) | Call(
+            Operation.DIVIDE, (Call(Operation.SQRT, (Name() | Call() as base,)), _)
+        ):
+            return base
+    return None
+
+
+def _joined(factors: list[Expression], roots: Mapping[str, Expression]) -> Expression:
+    """Return the product of factors, with powers for roots and what they are roots of."""
+    for factor in list(factors):
+        root = roots.get(factor.text, factor) if isinstance(factor, Name) else factor
+        base = _root_of(root)
+        exponents = {
+            power: exponent
+            for power, exponent in ((each, _exponent_of(each, base)) for each in factors)
+            if exponent is not None and exponent > 0
+        }
+        if base is None or not exponents:
+            continue
+        power, exponent = next(iter(exponents.items()))
+        factors[factors.index(power)] = Call(Operation.POWER, (base, exponent + Fraction(1, 2)))
+        if root.operation is Operation.DIVIDE:
+            factors[factors.index(factor)] = Call(Operation.DIVIDE, (ONE, root.arguments[1]))
+        else:
+            factors.remove(factor)
+    return factors[0] if len(factors) == 1 else Call(Operation.MULTIPLY, tuple(factors))
+
+
+def _exponent_of(expression: Expression, base: Expression | None) -> Fraction | None:
+    """Return n of base^n, or None."""
+    match expression:
+        case Call(Operation.POWER, (other, Fraction() as exponent)) if other == base:
+            return exponent
+    return ONE if expression == base else None

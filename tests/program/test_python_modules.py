@@ -157,6 +157,26 @@ def test_casadi_differentiates(crane, jacobian):
     assert_close(np.concatenate([found[1].full(), found[3].full()], axis=1), expected)
 
 
+@pytest.mark.parametrize("x", [-1 / 4, 0.0, 2.0])
+def test_the_derivative_of_hertzs_force_was_no_number_without_contact(x, write_scene):
+    """The force max(0, -x)^(3/2) was x sqrt(x), and 0/0 its derivative at zero."""
+    model = scene_model(
+        write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [max(0, -x)^(3/2)])$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$"""),
+        Request(None),
+        (),
+        Limits(),
+    )
+    force, u = module_of(model, "jax").motion, np.zeros(0)
+    expected = [[-1.5 * max(0.0, -x) ** 0.5, 0.0]]
+    for derivative in (jax.jacfwd, jax.jacrev):
+        assert_close(np.asarray(derivative(force, 1)(0.0, np.array([x, 1.0]), u, u)), expected)
+    y = casadi.SX.sym("y", 2)
+    by_casadi = casadi.Function("by", [y], [casadi.jacobian(module_of(model, "casadi").motion(0, y, u, u), y)])
+    assert_close(by_casadi([x, 1.0]).full(), expected)
+
+
 @pytest.mark.parametrize("package", ["numpy", "jax"])
 def test_a_table_is_the_spline_between_its_points(lift, package):
     module, times = module_of(lift, package), np.linspace(0, 9, 41)

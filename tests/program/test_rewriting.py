@@ -5,7 +5,7 @@ from fractions import Fraction
 import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program
-from holonom.program.rewriting import ONE, ZERO, folded, with_numbers
+from holonom.program.rewriting import ONE, ZERO, folded, with_joined_roots, with_numbers
 
 X, Y = Name("x"), Name("y")
 
@@ -36,3 +36,26 @@ def test_a_number_goes_through_the_assignments():
     output = Call(Operation.ADD, (Call(Operation.MULTIPLY, (Y, Name("z"))), X))
     found = with_numbers(Program(None, "direct", "", ("x", "y", "m"), (("z", product),), {"out": output}), {"m": ZERO})
     assert (found.inputs, found.assignments, found.outputs) == (("x", "y"), (), {"out": X})
+
+
+def call(operation, *arguments):
+    return Call(Operation[operation], arguments)
+
+
+@pytest.mark.parametrize(
+    ("factors", "expected"),
+    [
+        ((X, call("SQRT", X)), call("POWER", X, Fraction(3, 2))),
+        ((call("SQRT", X), Y, call("POWER", X, Fraction(2))), call("MULTIPLY", Y, call("POWER", X, Fraction(5, 2)))),
+        ((X, call("MULTIPLY", Name("r"), Y)), call("MULTIPLY", call("POWER", X, Fraction(3, 2)), Y)),
+        ((X, Name("s")), call("MULTIPLY", call("POWER", X, Fraction(3, 2)), call("DIVIDE", ONE, Y))),
+        ((Y, Name("r")), call("MULTIPLY", Y, Name("r"))),
+        ((call("POWER", X, -ONE), Name("r")), call("MULTIPLY", call("POWER", X, -ONE), Name("r"))),
+    ],
+)
+def test_a_root_times_what_it_is_a_root_of_is_a_power(factors, expected):
+    roots = (("r", call("SQRT", X)), ("s", call("DIVIDE", call("SQRT", X), Y)))
+    product = ("w", call("NEGATE", call("MULTIPLY", *factors)))
+    found = with_joined_roots(Program(None, "direct", "", ("x", "y"), (*roots, product), {"w": Name("w")}))
+    assert found.assignments[-1] == ("w", call("NEGATE", expected))
+    assert len(found.assignments) == 1 + (Name("r") in expected.arguments)

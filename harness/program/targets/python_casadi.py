@@ -14,6 +14,7 @@ CASADI = Package(
     support=template("casadi.py.txt"),
     renamed={"pow": "power"},
     own=frozenset({"square", "cube"}),
+    differentiates=True,
 )
 
 

@@ -27,6 +27,7 @@ JAX = Package(
     imports="import jax.numpy as xp",
     support=ARRAY + template("arrays.py.txt"),
     elsewhere={"erf": "jax.scipy.special"},
+    differentiates=True,
 )
 
 
