@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     import pyarrow
 
 CORNERED = frozenset({Operation.ABS, Operation.SIGN, Operation.ARCTAN2})  # with corners, or jumps
-TOUCHED = 1e-9  # of the largest argument of a root: the motion is followed by itself, to see whether it is zero
+TOUCHED = 1e-9  # of the largest argument of a root: the motion is integrated by itself, to see whether it is zero
 GROUP = 10_000  # rows in memory at a time, whatever the chunk
 
 OWN = ("row", str(Kind.RESIDUAL), "status", "note")  # columns of every sweep
