@@ -16,7 +16,7 @@ import shutil
 import signal
 import stat
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
@@ -28,7 +28,7 @@ from .hidden import visible_line
 from .language import Message, translatable
 from .preloaded import ARGUMENTS, ENVIRONMENT, JOBS, QUIET, preloaded_image, quoted, remove_if_broken, share_of_memory
 from .sandbox import MIB, LimitExceeded, Limits, Place, Sandbox, is_isolated, run_process, surroundings
-from .scene_files import copy_scene_files
+from .scene_files import opened_scene_files
 from .supervisor import doing
 from .temporary import private_directory
 
@@ -406,13 +406,21 @@ def _run(run: Run, start: str) -> Ended:
     """Execute the steps of `start`."""
     maxima = _maxima()
     image = _image(maxima)
-    place = _place(run, Path(maxima))
     output = bytearray()
-    ending = _attempt(run, start, maxima, image, place, output)
-    if ending is not None and ending.kind is ErrorKind.NOT_MAXIMA and image:  # broken, or removed by another command
-        remove_if_broken(image, place)
-        ending = _attempt(run, start, maxima, None, place, output)
+    with _files(run) as copies:
+        place = _place(run, Path(maxima), copies)
+        ending = _attempt(run, start, maxima, image, place, output)
+        if ending is not None and ending.kind is ErrorKind.NOT_MAXIMA and image:  # broken, or removed by another one
+            remove_if_broken(image, place)
+            ending = _attempt(run, start, maxima, None, place, output)
     return Ended(ending, output.decode(errors="replace"))
+
+
+def _files(run: Run) -> AbstractContextManager[Mapping[Path, int]]:
+    """Return the opened files that the run gets copies of."""
+    if run.reads_files and is_isolated(run.limits):
+        return opened_scene_files(run.file, run.limits.allow)
+    return nullcontext({})
 
 
 def _attempt(run: Run, start: str, maxima: str, image: Path | None, place: Place, output: bytearray) -> Ending | None:
@@ -448,7 +456,7 @@ def _passed_on() -> dict[str, str]:
     return {name: os.environ[name] for name in PASSED_ON if name in os.environ}
 
 
-def _place(run: Run, maxima: Path) -> Place:
+def _place(run: Run, maxima: Path, copies: Mapping[Path, int]) -> Place:
     """Return a private directory and an environment without local settings.
 
     Maxima's messages are in English.
@@ -472,8 +480,6 @@ def _place(run: Run, maxima: Path) -> Place:
     outputs = [run.leaves(what) for what in run.left_behind]
     for each in outputs:
         each.touch()
-    read = run.reads_files and is_isolated(run.limits)
-    copies = copy_scene_files(run.file, run.directory, run.limits.allow) if read else {}
     return Place(run.directory, environment, run.limits, (*surroundings(maxima), LIBRARY), copies, outputs)
 
 

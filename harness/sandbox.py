@@ -138,8 +138,8 @@ class Place:
         What the process may take.
     readable : sequence of Path
         Files and folders that it can read in the sandbox besides the system's programs.
-    copies : mapping of Path to Path
-        Files that it can read in the sandbox, each with the file that holds its content.
+    copies : mapping of Path to int
+        Files of which it can read copies in the sandbox, each with a descriptor of its content.
     outputs : sequence of Path
         Files of the directory that it can write to from the sandbox.
     """
@@ -148,7 +148,7 @@ class Place:
     environment: Mapping[str, str]
     limits: Limits
     readable: Sequence[Path] = ()
-    copies: Mapping[Path, Path] = field(default_factory=dict)
+    copies: Mapping[Path, int] = field(default_factory=dict)
     outputs: Sequence[Path] = ()
 
 
@@ -189,7 +189,7 @@ def run_process(command: Sequence[str], place: Place, printed: bytearray) -> int
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             start_new_session=True,  # out of reach of the terminal's Ctrl-C
-            pass_fds=filters,
+            pass_fds=(*filters, *place.copies.values()),
         )
     try:
         _watch(process, place, printed)
@@ -286,8 +286,9 @@ def _sandbox(command: Sequence[str], place: Place, filters: Sequence[int]) -> li
         mounts += ["--symlink", os.readlink(part), part] if os.path.islink(part) else ["--ro-bind", part, part]
     for part in map(str, (*surroundings(Path(command[0])), *place.readable)):
         mounts += ["--ro-bind", part, part]
-    for seen, content in place.copies.items():
-        mounts += ["--ro-bind", str(content), str(seen)]
+    for seen, descriptor in place.copies.items():
+        os.lseek(descriptor, 0, os.SEEK_SET)  # an earlier process has had a copy
+        mounts += ["--ro-bind-data", str(descriptor), str(seen)]
     mounts += ["--size", str(limits.memory_mib * MIB // SCRATCH), "--tmpfs", own]
     for file in sorted(each for each in place.directory.iterdir() if each.is_file()):
         mounts += ["--bind" if file in place.outputs else "--ro-bind", str(file), f"{own}/{file.name}"]

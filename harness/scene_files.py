@@ -1,4 +1,4 @@
-"""Copies of the files that a scene may read in the sandbox.
+"""The files that a scene may read in the sandbox, opened.
 
 They are the regular files below the scene's folder that its text names, and those in it that end in .mac, .lisp
 or .csv. Links are not followed, nor is a hidden file or folder entered, and their size is limited.
@@ -7,8 +7,8 @@ or .csv. Links are not followed, nor is a hidden file or folder entered, and the
 import os
 import re
 import stat
-from collections.abc import Iterable, Mapping
-from contextlib import suppress
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .failures import ErrorKind, HolonomError
@@ -19,61 +19,59 @@ STRING = re.compile(r'"((?:[^"\\\n]|\\.)*+)')  # also one that does not end, or 
 MOST_FILES, MOST_BYTES = 500, 256 * 2**20
 
 
-def copy_scene_files(scene: Path, directory: Path, allowed: Iterable[Path]) -> Mapping[Path, Path]:
-    """Copy the files that a scene may read into a folder of a directory.
+@contextmanager
+def opened_scene_files(scene: Path, allowed: Iterable[Path]) -> Iterator[Mapping[Path, int]]:
+    """Open the files that a scene may read, and close them at the end.
 
     Parameters
     ----------
     scene : Path
         The scene file.
-    directory : Path
-        A private directory.
     allowed : iterable of Path
         Further files that the scene may read.
 
-    Returns
-    -------
-    mapping of Path to Path
-        The copy of each file.
+    Yields
+    ------
+    mapping of Path to int
+        The descriptor of each file.
 
     Raises
     ------
     HolonomError
         The files are too many or too large, or an allowed one cannot be read.
     """
-    folder = scene.resolve().parent
-    copies = _Copies(directory / "files")
-    for file in allowed:
-        copies.add(file.resolve(), _open_allowed(file), scene)
-    for name in (*_named_in(scene), *_beside(folder)):
-        with suppress(OSError):  # the text means something else, or the file is a link, or not to be read
-            copies.add(folder / name, _open_below(folder, name), scene)
-    return copies.of
+    folder, found = scene.resolve().parent, _Opened(scene)
+    try:
+        for file in allowed:
+            found.add(file.resolve(), _open_allowed(file))
+        for name in (*_named_in(scene), *_beside(folder)):
+            with suppress(OSError):  # the text means something else, or the file is a link, or not to be read
+                found.add(folder / name, _open_below(folder, name))
+        yield found.descriptors
+    finally:
+        for descriptor in found.descriptors.values():
+            os.close(descriptor)
 
 
-class _Copies:
-    """Copies of files, of limited number and size."""
+class _Opened:
+    """Opened files, of limited number and size."""
 
-    def __init__(self, folder: Path) -> None:
-        folder.mkdir()
-        self.of: dict[Path, Path] = {}
-        self._folder = folder
-        self._left = MOST_BYTES
+    def __init__(self, scene: Path) -> None:
+        self.descriptors: dict[Path, int] = {}
+        self._scene, self._left = scene, MOST_BYTES
 
-    def add(self, path: Path, descriptor: int, scene: Path) -> None:
-        """Copy a file from its descriptor, and close that."""
-        with open(descriptor, "rb") as source:
-            if path in self.of:
-                return
-            content = source.read(self._left + 1)
-        self._left -= len(content)
-        if self._left < 0 or len(self.of) == MOST_FILES:
+    def add(self, path: Path, descriptor: int) -> None:
+        """Add a file by its descriptor, or close that if the file is known."""
+        if path in self.descriptors:
+            os.close(descriptor)
+            return
+        self.descriptors[path] = descriptor
+        self._left -= os.fstat(descriptor).st_size
+        if self._left < 0 or len(self.descriptors) > MOST_FILES:
             detail = translatable(
                 "more than %(files)s files or %(size)s MiB", files=MOST_FILES, size=MOST_BYTES // 2**20
             )
-            raise HolonomError(ErrorKind.TOO_MUCH_BESIDE, scene, detail)
-        self.of[path] = self._folder / str(len(self.of))
-        self.of[path].write_bytes(content)
+            raise HolonomError(ErrorKind.TOO_MUCH_BESIDE, self._scene, detail)
 
 
 def _named_in(scene: Path) -> list[str]:
