@@ -94,12 +94,13 @@ def explanation(model: Model) -> str:
     str
         Text for the header.
     """
-    inputs = [
-        f"the controls {', '.join(model.controls)}, each with two time derivatives" if model.controls else "",
-        f"the parameters {', '.join(model.parameters)}" if model.parameters else "",
-    ]
-    given = " and ".join(filter(None, inputs)) or "none"
-    return f"{title_of_model(model)}. Inputs besides t, q and v: {given}. The others have the scene's values."
+    inputs = []
+    if model.controls:
+        inputs.append(f"u, the controls {', '.join(model.controls)}, then all their first, then all second derivatives")
+    if model.parameters:
+        inputs.append(f"p, the parameters {', '.join(model.parameters)}")
+    given = "; ".join(inputs) or "none"
+    return f"{title_of_model(model)}. Inputs besides t, q and v: {given}. Other parameters have the scene's values."
 
 
 def _enumerations(model: Model, prefix: str) -> Iterator[str]:
