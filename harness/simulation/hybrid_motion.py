@@ -59,9 +59,11 @@ NEAR = 1e-6  # share of its changes that a determinant has at a paradox, towards
 NOT_UNIQUE = translatable(
     "forces that contain multipliers may leave no acceleration, or several (Painleve's paradoxes)"
 )
+ROOT_JUMPS = 1e-6  # of the nominal accelerations: a change from shortly before the zero of a root to shortly behind it
 ROOT_OF_ZERO = translatable(
-    "a root of zero leaves open how the motion continues (in a line, write abs(v) for the root of v^2)"
+    "series do not continue a root beyond its zero (in a line, write abs(v) for the root of v^2)"
 )
+ROOT_PASSED = 1e-9  # of the time span: how far behind the zero of a root to continue
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
 
 
@@ -238,16 +240,33 @@ class HybridMotion:
             if release is not None:
                 step = step._replace(end=release.t)
             lost = None if step.mode.radicands is None else step.mode.radicands.lost(step)
+            behind = None if lost is None else self._behind_root(lost, step)
             if lost is not None:
-                step = step._replace(end=lost)
+                step = step._replace(end=lost if behind is None else behind)
             if step.start != step.end:
                 yield step._replace(impulse=self._impulse)
                 self._impulse = self._zero
             if lost is not None:
-                self._reject(lost, ROOT_OF_ZERO)
+                if behind is None:
+                    self._reject(lost, ROOT_OF_ZERO)
+                self.mode.engine.restart(behind, step.states(np.array([behind]))[:, 0])
+                break
             if release is not None:
                 self._release(release, step)
                 break
+
+    def _behind_root(self, zero: float, step: Step) -> float | None:
+        """Return a time behind the zero of a root until which the step is right.
+
+        It is None in other precisions, and if the accelerations jump at the zero.
+        """
+        near = ROOT_PASSED * self._span
+        around = np.array([zero - near, zero + near])
+        if self._precision.name != "double" or not step.start + 3 * near < zero < step.end - near:
+            return None
+        before, behind = step.mode.engine.solutions(around, step.states(around)).accelerations.T
+        change = np.max(np.abs(behind - before) / self.nominal.accelerations)
+        return around[1] if change <= ROOT_JUMPS else None
 
     def _to_stop(self, stop: Any) -> Iterator[Step]:
         mode = self.mode

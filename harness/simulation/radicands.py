@@ -3,8 +3,8 @@
 The square root of x^2 + y^2 is |x| on the line y = 0. A step across the zero of its argument continues the root with
 the wrong sign, as an analytic function, and no estimate of its error shows that. So arguments of roots are examined
 along the whole motion, as switching functions are (`zeros.py`). If one touches zero, the velocities behind it must
-change by the integral of the accelerations. If they do not, the motion ends there: friction in a plane sticks from
-then on, and a spring of no length has no direction.
+change by the integral of the accelerations. If they do not, the motion begins anew behind the zero, or ends there if
+the accelerations jump: friction in a plane sticks from then on, and a spring of no length has no direction.
 
 Roots whose argument has a sign of its own, as Hertz's force, are followed by the modes of the motion.
 """

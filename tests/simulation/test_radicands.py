@@ -18,6 +18,8 @@ motion : holonomic_scene(system, parameter_values = [k = 2, d = 0], initial_stat
 SPEED = "sqrt((dot(x) - k*d)^2 + dot(y)^2)"
 FRICTION = f"forces = [-k*(dot(x) - k*d)/{SPEED}, -k*dot(y)/{SPEED}]"
 SPRING = "potential_energy = k*(sqrt(x^2 + (y - d)^2) - 1)^2/4"
+VELOCITY = "sqrt((dot(x) - d)^2 + dot(y)^2)"
+DRAG = "forces = [1 - k*(dot(x) - d)*abs(dot(x) - d), -k*dot(y)]"
 THROWN = "x = 0, y = 0, dot(x) = 3, dot(y) = 4"
 DRAWN = "x = 3/2, y = 0, dot(x) = -3, dot(y) = 0"
 
@@ -46,6 +48,21 @@ def test_a_spring_of_no_length_pushed_on_to_the_same_side():
     with failing(ErrorKind.NO_WAY_ON) as stopped:
         plane(SPRING, DRAWN).simulate(engine="taylor")
     assert float(stopped.value.detail.split(",")[0]) == pytest.approx(0.5001791778, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("plane_effects", "line_effects", "start"),
+    [
+        ("potential_energy = k*(x^2 + (y - d)^2)^(3/2)", "potential_energy = k*abs(x)^3 + (y - d)^2", DRAWN),
+        (f"forces = [1 - k*(dot(x) - d)*{VELOCITY}, -k*dot(y)*{VELOCITY}]", DRAG, DRAWN),
+    ],
+    ids=["a cubic potential", "quadratic drag"],
+)
+def test_continuous_forces_turn_as_they_do_in_a_line(plane_effects, line_effects, start):
+    both = [plane(effects, start).simulate(engine="taylor") for effects in (plane_effects, line_effects)]
+    found, truth = (motion.report.coordinates["x"] for motion in both)
+    assert both[0].report.trusted
+    assert found == pytest.approx(truth, rel=1e-12)
 
 
 @pytest.mark.parametrize("distance", [1e-9, 1e-6])
