@@ -239,6 +239,22 @@ scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], parameter_v
     assert q.tolist() == [far, 0.5, 0.1]
 
 
+def test_where_all_coordinates_are_zero_newtons_steps_underflow(write_scene, tmp_path, c_compiler):
+    file = write_scene("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2 + 3*dot(y)^2,
+  constraints = [4*x + 6*y, (t + 2)^(1/3)*x + 3*y])$
+scene : holonomic_scene(system, initial_state = [])$""")
+    directory = write_library(tmp_path / "library", file, "rest")
+    run("cc", "-std=c11", "-shared", "-fPIC", "rest.c", "-lm", "-o", "rest.so", directory=directory)
+    project = ctypes.CDLL(str(directory / "rest.so")).rest_project
+    project.argtypes = [ctypes.c_double, *[DOUBLES] * 4]
+    for size in (1.0, 1e-4, 1e-160, 1e-300, 1e-320):
+        for angle in range(8):
+            q, v = size * np.array([np.cos(angle), np.sin(angle)]), np.zeros(2)
+            assert project(0.0, q, v, np.zeros(0), np.zeros(0)) == 0
+            assert q == pytest.approx([0, 0], abs=1e-150)
+
+
 def test_the_law_and_the_values_are_those_of_the_scene(pendulum):
     p, u = np.empty(2), np.full(3, np.nan)
     pendulum.bob_values(p)

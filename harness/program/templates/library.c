@@ -2,6 +2,7 @@
 
 #include "@{name}.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -102,8 +103,8 @@ int @{name}_project(double t, double *q, double *v, const double *u, const doubl
     }
     @{name}_residual(t, x, v, u, p, f, rate);
     roughly(t, x, v, u, p, rough);
-    for (int b = 0; b < @{g}; b++)
-        if (!(fabs(f[b]) <= 1e-5*fabs(rough[b] - f[b]))) return 1; /* rounding to 53 bits is 2^-33 of this */
+    for (int b = 0; b < @{g}; b++) /* rounding to 53 bits is 2^-33 of that to 20; steps end where squares underflow */
+        if (!(fabs(f[b]) <= 1e-5*fabs(rough[b] - f[b]) + sqrt(DBL_MIN)/DBL_EPSILON)) return 1;
     if (!isfinite(size_of(dv))) return 1;
     for (int s = 0; s < @{n}; s++) q[s] = x[s], v[s] += dv[s];
     return 0;
