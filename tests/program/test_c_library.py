@@ -218,6 +218,23 @@ def test_what_cannot_be_projected_is_left_as_it_was(pendulum):
     assert v.tolist() == [0.4, 0.3]
 
 
+@pytest.mark.parametrize(("scene", "n"), [("car_axis.mac", 4), ("hard/sarrus_linkage.mac", 15)])
+def test_constraints_whose_terms_all_vanish_have_the_rounding_errors_of_others(tmp_path, c_compiler, scene, n):
+    directory = write_library(tmp_path / "library", scene, "system")
+    run("cc", "-std=c11", "-shared", "-fPIC", "system.c", "-lm", "-o", "system.so", directory=directory)
+    library = ctypes.CDLL(str(directory / "system.so"))
+    library.system_project.argtypes = [ctypes.c_double, *[DOUBLES] * 4]
+    library.system_start.argtypes = [DOUBLES] * 3
+    library.system_law.argtypes = [ctypes.c_double, *[DOUBLES] * 2]
+    t, q, v, u, none = np.zeros(1), np.zeros(n), np.zeros(n), np.zeros(30), np.zeros(0)
+    library.system_start(t, q, v)
+    library.system_law(t[0], none, u)
+    rng = np.random.default_rng(3)
+    for size in (1e-14, 1e-9, 1e-5, 1e-3):
+        moved = q + size * rng.normal(size=n)
+        assert library.system_project(t[0], moved, v.copy(), u, none) == 0
+
+
 @pytest.mark.parametrize("far", [1.0, 1e9])
 def test_a_coordinate_elsewhere_is_no_measure_for_an_angle(write_scene, tmp_path, c_compiler, far):
     """Where sin(a) = 3/2 was to hold, the angle counted as found, for it is small beside 1e9."""
@@ -314,7 +331,7 @@ def test_no_name_of_a_library_makes_a_function_one_that_it_has(tmp_path):
     public = set(re.findall(r"^(?:void|int|const char \*const) bob(_\w+)", text, re.MULTILINE))
     own = set(re.findall(r"^static (?:inline )?(?:double|void|lanes) (\w+)\(", text, re.MULTILINE))
     assert {"_motion", "_project", "_outputs"} < public
-    assert {"size_of", "square", "lanes_at"} < own
+    assert {"lengths_of", "square", "lanes_at"} < own
     assert [(name, end) for name in own for end in public if name.endswith(end)] == []
 
 

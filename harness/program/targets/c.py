@@ -27,8 +27,8 @@ from ..c_source import (
 )
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
-from ..motion_program import Program
-from ..rewriting import computing, with_factors
+from ..motion_program import Program, names_in
+from ..rewriting import computing
 from ..templates import filled, template
 
 GIVEN = "double t, const double *q, const double *v, const double *u, const double *p"
@@ -39,7 +39,6 @@ NOT_A_NAME = re.findall(
     "stdbool stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype features strings "
     "c m all clean help install package test",
 )  # headers of the C library, which NAME.h would hide, its parts that programs link, and targets of CMake
-FACTORS = [1 + (2 * (0.618034 * k % 1) - 1) * 2**-20 for k in range(61)]  # rounding errors to 20 bits
 ENTRY = re.compile(r"J\[(\d+),(\d+)\]")  # of the constraints' Jacobian, counted from one
 
 
@@ -135,7 +134,6 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
     functions = {
         "motion": one("motion", "a lambda", model.motion, _results(model, "{array}[{index}]")),
         "residual": _residual(model, one),
-        "rough": _rough_residual(model, one),
         "jacobian": _jacobian(model, one),
         "servo": _found("servo", model.servo, one, "found"),
         "outputs": _found("observe", model.outputs, one, "y"),
@@ -143,9 +141,12 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
             "corrections", "dq dv", model.projection, [corrections[name] for name in model.projection.outputs]
         ),
     }
+    parts = _parts(model)
     return filled(
         "library.c",
         **written,
+        part=", ".join(map(str, parts)),
+        parts=max(parts) + 1,
         **{name: function.body for name, function in functions.items()},
         pieces="".join(function.functions for function in functions.values()),
         helpers=HELPERS,
@@ -240,13 +241,23 @@ def _residual(model: Model, function: Callable[..., SourceParts]) -> SourceParts
     return _computed("residual", "f rate", model.constraints, places, function)
 
 
-def _rough_residual(model: Model, function: Callable[..., SourceParts]) -> SourceParts:
-    """Return the body of a function that computes residuals to 20 bits."""
-    places = {f"residual[{b}]": f"f[{b - 1}]" for b in range(1, len(model.multipliers) + 1)}
-    factors = [f"factor[{k}]" for k in range(len(FACTORS))]
-    rough = model.constraints and with_factors(computing(model.constraints, places), factors)
-    inputs = [*_places(model, "{array}[{index}]", "t"), *map(repr, FACTORS)]
-    return _computed("roughly", "f", rough, places, partial(function, inputs=inputs))
+def _parts(model: Model) -> list[int]:
+    """Return for each coordinate the number of the part that it is corrected with."""
+    names = {f"position_correction[{s}]": name for s, name in enumerate(model.coordinates, start=1)}
+    program = computing(model.projection, names)
+    owner = {name: name for name in model.coordinates}  # of the names that coordinates determine, up to one of a part
+
+    def part(name: str) -> str:
+        while owner[name] != name:
+            owner[name] = name = owner[owner[name]]
+        return name
+
+    for name, expression in (*program.assignments, *((names[name], value) for name, value in program.outputs.items())):
+        for known in names_in(expression) & owner.keys():
+            owner.setdefault(name, name)
+            owner[part(known)] = part(name)
+    first = list(dict.fromkeys(map(part, model.coordinates)))
+    return [first.index(part(name)) for name in model.coordinates]
 
 
 def _found(name: str, program: Program | None, function: Callable[..., SourceParts], array: str) -> SourceParts:

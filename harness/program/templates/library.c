@@ -78,34 +78,39 @@ static void corrections(double t, const double *q, const double *v, const double
 @{corrections}
 }
 
-/* Residuals, as if rounded to 20 bits: how far they are from the others, is their uncertainty with 20 bits. */
-static void roughly(double t, const double *q, const double *v, const double *u, const double *p, double *f)
+/* Lengths of the parts of x that different constraints determine. */
+static void lengths_of(const double *x, double *lengths)
 {
-@{rough}
-}
-
-static double size_of(const double *x)
-{
-    double squares = 0;
-    for (int s = 0; s < @{n}; s++) squares += x[s]*x[s];
-    return sqrt(squares);
+    static const int part[] = {@{part}};
+    for (int i = 0; i < @{parts}; i++) lengths[i] = 0;
+    for (int s = 0; s < @{n}; s++) lengths[part[s]] += x[s]*x[s];
+    for (int i = 0; i < @{parts}; i++) lengths[i] = sqrt(lengths[i]);
 }
 
 int @{name}_project(double t, double *q, double *v, const double *u, const double *p)
 {
-    double x[@{n}], dq[@{n}], dv[@{n}], f[@{g} + 1], rate[@{g} + 1], rough[@{g} + 1], step = INFINITY;
+    double x[@{n}], dq[@{n}], dv[@{n}], step[@{parts}], next[@{parts}], size[@{parts}];
+    int converged[@{parts}] = {0}, left = @{parts};
     memcpy(x, q, sizeof x);
     corrections(t, x, v, u, p, dq, dv);
-    for (double next = size_of(dq); next < step/2; next = size_of(dq)) { /* until steps are rounding */
-        step = next;
+    lengths_of(dq, next);
+    for (int i = 0; i < @{parts}; i++) step[i] = INFINITY;
+    for (;;) {
+        for (int i = 0; i < @{parts}; i++) {
+            if (converged[i]) continue;
+            if (next[i] < step[i]/2) step[i] = next[i];
+            else converged[i] = 1, left--; /* or no longer: then its step is no rounding */
+        }
+        if (!left) break;
         for (int s = 0; s < @{n}; s++) x[s] += dq[s];
         corrections(t, x, v, u, p, dq, dv);
+        lengths_of(dq, next);
     }
-    @{name}_residual(t, x, v, u, p, f, rate);
-    roughly(t, x, v, u, p, rough);
-    for (int b = 0; b < @{g}; b++) /* rounding to 53 bits is 2^-33 of that to 20; steps end where squares underflow */
-        if (!(fabs(f[b]) <= 1e-5*fabs(rough[b] - f[b]) + sqrt(DBL_MIN)/DBL_EPSILON)) return 1;
-    if (!isfinite(size_of(dv))) return 1;
+    lengths_of(x, size);
+    for (int i = 0; i < @{parts}; i++)
+        if (!(step[i] <= sqrt(DBL_EPSILON)*size[i])) return 1;
+    for (int s = 0; s < @{n}; s++)
+        if (!isfinite(dv[s])) return 1;
     for (int s = 0; s < @{n}; s++) q[s] = x[s], v[s] += dv[s];
     return 0;
 }
