@@ -61,7 +61,8 @@ NOT_UNIQUE = translatable(
 )
 ROOT_JUMPS = 1e-6  # of the nominal accelerations: a change from shortly before the zero of a root to shortly behind it
 ROOT_OF_ZERO = translatable(
-    "series do not continue a root beyond its zero (in a line, write abs(v) for the root of v^2)"
+    "series do not continue a root beyond its zero, or atan2 beyond its cut "
+    "(in a line, write abs(v) for the root of v^2)"
 )
 ROOT_PASSED = 1e-9  # of the time span: how far behind the zero of a root to continue
 SOON = 1e-9  # of the time span: how far ahead the sign of a function of the time is looked for where it vanishes
@@ -266,7 +267,8 @@ class HybridMotion:
             return None
         before, behind = step.mode.engine.solutions(around, step.states(around)).accelerations.T
         change = np.max(np.abs(behind - before) / self.nominal.accelerations)
-        return around[1] if change <= ROOT_JUMPS else None
+        agrees = change <= ROOT_JUMPS and step.mode.radicands.agrees(step._replace(end=around[1]))
+        return around[1] if agrees else None
 
     def _to_stop(self, stop: Any) -> Iterator[Step]:
         mode = self.mode

@@ -6,6 +6,8 @@ along the whole motion, as switching functions are (`zeros.py`). If one touches 
 change by the integral of the accelerations. If they do not, the motion begins anew behind the zero, or ends there if
 the accelerations jump: friction in a plane sticks from then on, and a spring of no length has no direction.
 
+The angle atan2(y, x) is continued beyond its cut in the same way.
+
 Roots whose argument has a sign of its own, as Hertz's force, are followed by the modes of the motion.
 """
 
@@ -15,7 +17,7 @@ import numpy as np
 
 from ..program.friction import Pattern
 from ..program.motion_problem import MotionProblem
-from ..program.motion_program import Expression, Name, Program, calls_in, names_in
+from ..program.motion_program import Call, Expression, Name, Operation, Program, calls_in, names_in
 from ..program.precision import Precision
 from ..program.rewriting import computing
 from ..program.sign_pattern import program_in
@@ -32,6 +34,8 @@ EDGES = np.concatenate([[0.0], 2.0 ** np.arange(-40, 1)])  # of what is behind a
 
 def radicands(problem: MotionProblem) -> Program | None:
     """Return the arguments of roots of the state, without those that contain signs.
+
+    For atan2(y, x) it is sqrt(x^2 + y^2) + x, which is zero on its cut.
 
     Parameters
     ----------
@@ -57,14 +61,27 @@ def radicands(problem: MotionProblem) -> Program | None:
 def _radicands_of(program: Program, moving: set[str], signed: set[str]) -> list[Expression]:
     found: dict[Expression, None] = {}
     for name, expression in program.assignments:
-        for call in filter(is_root, calls_in(expression)):
-            names = names_in(call.arguments[0])
+        for vanishing in filter(None, map(_vanishing_at_branch, calls_in(expression))):
+            names = names_in(vanishing)
             if names & moving and not names & signed:
-                found[call.arguments[0]] = None
+                found[vanishing] = None
         for names in (moving, signed):
             if names_in(expression) & names:
                 names.add(name)
     return list(found)
+
+
+def _vanishing_at_branch(call: Call) -> Expression | None:
+    """Return the function that vanishes where an operation has another branch.
+
+    It is the argument of a root, and for atan2(y, x), whose cut is y = 0, x < 0, it is sqrt(x^2 + y^2) + x.
+    """
+    if is_root(call):
+        return call.arguments[0]
+    if call.operation is not Operation.ARCTAN2:
+        return None
+    squares = tuple(Call(Operation.MULTIPLY, (each, each)) for each in call.arguments)
+    return Call(Operation.ADD, (Call(Operation.SQRT, (Call(Operation.ADD, squares),)), call.arguments[1]))
 
 
 class Radicands(SignedFunctions):
@@ -123,6 +140,21 @@ class Radicands(SignedFunctions):
             return None
         edges = zero.t + (step.end - zero.t) * self._edges
         return zero.t if self._defect.between(edges, step) > self._most else None
+
+    def agrees(self, step: Step) -> bool:
+        """Return True if the velocities change by the integral of the accelerations.
+
+        Parameters
+        ----------
+        step : Step
+            A step of the mode, up to its end.
+
+        Returns
+        -------
+        bool
+        """
+        edges = step.end - (step.end - step.start) * self._edges[::-1]
+        return self._defect.between(edges, step) <= self._most
 
     def _in_row(self, step: Step, row: int, places: Numbers, values: Numbers, first: int) -> Crossing | None:
         """Return the first sample or minimum that is small, of either sign."""

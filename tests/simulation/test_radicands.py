@@ -65,6 +65,22 @@ def test_continuous_forces_turn_as_they_do_in_a_line(plane_effects, line_effects
     assert found == pytest.approx(truth, rel=1e-12)
 
 
+@pytest.mark.parametrize("force", ["k*cos(3*atan2(y, x))", "k*sin(atan2(y - d, x))"])
+def test_functions_of_an_angle_pass_its_cut(force):
+    """Truth: steps of another engine."""
+    motion = plane(f"forces = [{force}, -k*d]", "x = 1, y = 1, dot(x) = -3, dot(y) = -1")
+    found, truth = (motion.simulate(engine=engine, tol=1e-13).report for engine in ("taylor", "runge-kutta"))
+    assert found.trusted
+    assert found.coordinates["x"] == pytest.approx(truth.coordinates["x"], rel=1e-10)
+
+
+@pytest.mark.parametrize("start", ["x = 1, y = 1, dot(x) = -2, dot(y) = -1", "x = 1, y = 0, dot(x) = -1, dot(y) = 0"])
+def test_an_angle_was_continued_beyond_its_cut(start):
+    with failing(ErrorKind.NO_WAY_ON) as stopped:
+        plane("forces = [-k*atan2(y - d, x)/2, 0]", start).simulate(engine="taylor")
+    assert float(stopped.value.detail.split(",")[0]) == pytest.approx(1, rel=1 / 32)
+
+
 @pytest.mark.parametrize("distance", [1e-9, 1e-6])
 def test_a_spring_passes_its_end_nearby(distance):
     """Truth: the line, where the spring has the length |x|."""

@@ -51,6 +51,10 @@ SCENES = {
         scene("x, y", PLANE, "0", "x = 0, y = 0, dot(x) = 3, dot(y) = 4", "4", f"forces = [{FRICTION}]"),
         ("1:63/50:3", [OK, OK, BROKEN_OFF]),
     ),
+    "an angle beyond its cut": (
+        scene("x, y", PLANE, "0", "x = 1, y = 1, dot(x) = -2, dot(y) = -1", "3", "forces = [-k*atan2(y, x), 0]"),
+        ("-3:1:3", [OK, BROKEN_OFF, BROKEN_OFF]),
+    ),
 }
 LONG = {
     "an oscillator": (scene("x", "dot(x)^2/2", "k*x^2/2", "x = 1, dot(x) = 0", "30"), ("1:25:3", [OK] * 3)),
