@@ -32,7 +32,7 @@ MARGIN = 1e3  # of a tolerance: the velocities of a step are not that wrong
 EDGES = np.concatenate([[0.0], 2.0 ** np.arange(-40, 1)])  # of what is behind a zero: roots begin there
 
 
-def radicands(problem: MotionProblem) -> Program | None:
+def radicands(problem: MotionProblem, program: Program | None = None) -> Program | None:
     """Return the arguments of roots of the state, without those that contain signs.
 
     For atan2(y, x) it is sqrt(x^2 + y^2) + x, which is zero on its cut.
@@ -41,19 +41,21 @@ def radicands(problem: MotionProblem) -> Program | None:
     ----------
     problem : MotionProblem
         The motion.
+    program : Program or None
+        One of its programs, in which to look for roots. Default: its matrices.
 
     Returns
     -------
     Program or None
         With outputs ``radicand[1]``, ``radicand[2]``, ..., or None without any.
     """
-    matrices = problem.matrices
-    found = _radicands_of(matrices, set(problem.state), {sign.name for sign in problem.signs})
+    program = problem.matrices if program is None else program
+    found = _radicands_of(program, set(problem.state), {sign.name for sign in problem.signs})
     if not found:
         return None
     named = {f"radicand[{place}]": each for place, each in enumerate(found, start=1)}
     with_arguments = replace(
-        matrices, assignments=(*matrices.assignments, *named.items()), outputs={name: Name(name) for name in named}
+        program, assignments=(*program.assignments, *named.items()), outputs={name: Name(name) for name in named}
     )
     return computing(with_arguments, named.keys())
 

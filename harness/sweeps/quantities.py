@@ -7,6 +7,7 @@ from ..language import translatable
 from ..program.heyoka_function import heyoka_expressions, import_heyoka, zero_multipliers
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Operation, Program, names_in
+from ..program.rewriting import computing
 from ..simulation.radicands import radicands
 from .outputs import not_an_output
 
@@ -97,10 +98,29 @@ def along_motion(problem: MotionProblem, known: Known) -> dict[str, Any]:
         problem.controls,
         problem.outputs,
         problem.ends.events,
-        radicands(problem),
+        radicands_beyond_energy(problem),
     )
     found = [heyoka_expressions(program, solved) for program in others if program is not None]
     return solved | {name: value for results in found for name, value in results.items()}
+
+
+def radicands_beyond_energy(problem: MotionProblem) -> Program | None:
+    """Return the arguments of roots whose zeros the energy does not show.
+
+    If the energy contains roots, they are those of the power of the other forces.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        The motion.
+
+    Returns
+    -------
+    Program or None
+        As `radicands` returns it.
+    """
+    energy, power = (computing(problem.energy, {name}) for name in ("energy", "power"))
+    return radicands(problem, None if radicands(problem, energy) is None else power)
 
 
 def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:

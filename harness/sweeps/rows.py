@@ -36,7 +36,6 @@ from ..simulation.nominal import (
     nominal_of,
     with_nominal,
 )
-from ..simulation.radicands import radicands
 from ..simulation.request import SimulationRequest, Stabilization
 from ..simulation.residuals import constraint_residuals
 from ..simulation.simulate import last_time
@@ -45,7 +44,7 @@ from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size, zeros_with_end
 from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output
-from .quantities import along_motion, expressions_of, forces_of, require_known
+from .quantities import along_motion, expressions_of, forces_of, radicands_beyond_energy, require_known
 from .request import TOLERANCE
 from .series import batch_radii
 from .single import SingleMotions
@@ -114,7 +113,7 @@ class RowMaker:
         self._free = forces_of(problem) if free else ([], [])
         self._along = [*(output.quantity for output in self._extremes), *self._free[0], *self._free[1]]
         self._crossing = [output.quantity for output in self._zeros]
-        roots = radicands(problem)
+        roots = radicands_beyond_energy(problem)
         self._radicands = [] if roots is None else [Name(name) for name in roots.outputs]
         self._seen_outputs = [*self._extremes, *(each for each in plan.outputs if each.kind is Kind.FREE), *self._zeros]
         self._hides = may_hide(problem.matrices, ("t", *problem.parameters))
