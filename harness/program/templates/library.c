@@ -99,7 +99,7 @@ int @{name}_project(double t, double *q, double *v, const double *u, const doubl
         for (int i = 0; i < @{parts}; i++) {
             if (converged[i]) continue;
             if (next[i] < step[i]/2) step[i] = next[i];
-            else converged[i] = 1, left--; /* or no longer: then its step is no rounding */
+            else converged[i] = 1, left--; /* if the step is still large, it fails below */
         }
         if (!left) break;
         for (int s = 0; s < @{n}; s++) x[s] += dq[s];

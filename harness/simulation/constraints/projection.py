@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from ...failures import ErrorKind, HolonomError
 from ...language import translatable
-from ..matrices import MotionMatrices, Vector
+from ..matrices import Matrix, MotionMatrices, Vector
 from ..place_and_reason import OVERFLOW, place_and_reason
 from .directions import EPSILON
 from .factorization import FactoredConstraints, factored_constraints
 
 ROUNDING = 8 * EPSILON  # relative size of a correction that is none
-CONSISTENT = 1e-9  # distance from a constraint, relative to the coordinates, that cannot be rounding
+CONSISTENT = 1e-9  # relative change of its coordinates, by which a constraint that holds may be changed
 CONTRACTION = 0.5  # smallest ratio of a small correction to the last one at which it is rounding, too
 ITERATIONS = 25
 
@@ -74,32 +74,30 @@ def settle(
             first = _where_not(at.finite, t)[0]
             raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(first, OVERFLOW))
         factored = factored_constraints(at.mass, at.jacobian, rank)
-        change = factored.correction(at.residual)
-        size, extent = factored.length(change), _extent(factored, state[..., :n], nominal.coordinates)
-        settled |= (size <= ROUNDING * extent) | ((CONTRACTION * last < size) & (size <= CONSISTENT * extent))
+        change, sizes = factored.correction(at.residual), np.maximum(np.abs(state[..., :n]), nominal.coordinates)
+        size, holds = factored.length(change), _holds(at.residual, at.jacobian, sizes)
+        settled |= np.all(np.abs(change) <= ROUNDING * sizes, axis=-1) | ((CONTRACTION * last < size) & holds)
         if np.all(settled) or not np.all(np.isfinite(size)):
             break
         moved = state[..., :n] + np.where(settled[..., None], 0.0, change)
         state, last = np.concatenate([moved, state[..., n:]], axis=-1), size
-    _require_small(t, at.residual, factored, extent)
+    _require(holds, t, at.residual, factored)
     change = factored.correction(at.residual_rate)
     left = at.residual_rate + np.matvec(at.jacobian, change)
-    _require_small(t, left, factored, _extent(factored, state[..., n:], nominal.velocities))
+    sizes = np.maximum(np.abs(state[..., n:]), nominal.velocities)
+    _require(_holds(left, at.jacobian, sizes), t, left, factored)
     return np.concatenate([state[..., :n], state[..., n:] + change], axis=-1), factored
 
 
-def _extent(factored: FactoredConstraints, numbers: Vector, sizes: Vector) -> Vector:
-    """Return the length of coordinates or velocities in the mass metric.
-
-    Each counts with at least its nominal size.
-    """
-    return factored.length(np.maximum(np.abs(numbers), sizes))
+def _holds(residual: Vector, jacobian: Matrix, sizes: Vector) -> NDArray[np.bool_]:
+    """Return True if residuals are small for the coordinates of each constraint."""
+    return np.all(np.abs(residual) <= CONSISTENT * np.matvec(np.abs(jacobian), sizes), axis=-1)
 
 
-def _require_small(t: float | Vector, residual: Vector, factored: FactoredConstraints, extent: Vector) -> None:
-    left = np.max(factored.distances(residual), axis=-1, initial=0.0)
-    if not np.all(small := left <= CONSISTENT * extent):
-        raise InconsistentConstraints(_where_not(small, t)[0], _where_not(small, left)[0])
+def _require(holds: NDArray[np.bool_], t: float | Vector, residual: Vector, factored: FactoredConstraints) -> None:
+    if not np.all(holds):
+        left = np.max(factored.distances(residual), axis=-1, initial=0.0)
+        raise InconsistentConstraints(_where_not(holds, t)[0], _where_not(holds, left)[0])
 
 
 def _where_not(good: NDArray[np.bool_], values: float | Vector) -> Vector:

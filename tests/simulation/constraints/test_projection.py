@@ -19,7 +19,7 @@ circle : holonomic_system(
   coordinates = [x, y], parameters = [m],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2,
   constraints = {constraints})$
-round : holonomic_scene(circle, parameter_values = [m = 3],
+round : holonomic_scene(circle, parameter_values = [m = 3], nominal = [y = 1],
   initial_state = [x = {x}, y = {y}, dot(x) = 0, dot(y) = 0])$
 """
 
@@ -57,6 +57,15 @@ def test_a_dependent_constraint_changes_nothing(circle):
     once, twice = circle("[(x^2 + y^2 - 4)/2]"), circle("[(x^2 + y^2 - 4)/2, 5*x^2 + 5*y^2 - 20]")
     state = np.array([1.5, 1.7, 0.4, -0.9])
     assert np.allclose(settle(once, 0.0, state, 1)[0], settle(twice, 0.0, state, 1)[0], rtol=1e-14)
+
+
+def test_the_size_of_a_free_coordinate_hid_what_is_left_of_a_constraint(circle):
+    """Beside x = 10^9 corrections of 1e-6 were rounding errors, and sin(y) = 3/2 was satisfied."""
+    state = np.array([1e9, 0.6, 0.0, 0.0])
+    found = settle(circle("[sin(y) - 3/5]", "10^9", "asin(3/5)"), 0.0, state, 1)[0]
+    assert found[1] == pytest.approx(np.arcsin(0.6), rel=1e-15)
+    with pytest.raises(InconsistentConstraints):
+        settle(circle("[sin(y) - 3/5 - t^2]", "10^9", "asin(3/5)"), 1.0, state, 1)
 
 
 def test_newtons_method_squares_the_distance(circle):
