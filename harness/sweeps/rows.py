@@ -231,8 +231,8 @@ class RowMaker:
         seen = found.seen[len(self._radicands) :]
         if self._crossing:
             last = self._values(self._crossing, ends, at[self._end], values)
-            zeros, largest = np.split(seen[-2 * len(last) :], 2)
-            zeros[...] = zeros_with_end(zeros, np.where(ends < self._end, ends, np.nan), last, largest)
+            zeros, sizes = np.split(seen[-2 * len(last) :], 2)
+            zeros[...] = zeros_with_end(zeros, np.where(ends < self._end, ends, np.nan), last, sizes)
             seen = self._without_rounding(seen, self._crossing, states, values, nominal)
         self._keep_along(rows, done, seen[:, well])
         return there[~well]
