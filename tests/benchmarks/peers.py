@@ -23,9 +23,11 @@ from holonom.sandbox import Limits
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "chain.mac"
 
-EQUATIONS = """
+OPENING = """
 load("holonom.mac")$
 open_namespace()$
+"""
+EQUATIONS = """
 scalarmatrixp : false$
 q : create_list(concat(axis, k), k, makelist(k, k, links), axis, ['x, 'y])$
 v : map('dot, q)$
@@ -205,7 +207,7 @@ def _plain_maxima(method: str, links: int, seconds: float, solve: str) -> Progra
     """The program of expressions that plain Maxima has derived; Holonom's library only writes them down."""
     with tempfile.TemporaryDirectory() as directory:
         file = Path(directory, "chain.mac")
-        file.write_text(f"links : {links}$\n{EQUATIONS}{solve}{WRITER}", encoding="utf-8")
+        file.write_text(f"{OPENING}links : {links}$\n{EQUATIONS}{solve}{WRITER}", encoding="utf-8")
         trees = json.loads(run_batch(file, "write_results", Limits(seconds=seconds)))
     return _program(method, links, [[f"out{index}", charged(tree)] for index, tree in enumerate(trees)])
 

@@ -26,7 +26,7 @@ from holonom.failures import ErrorKind, HolonomError
 from holonom.program.c_function import CFunction, compile_c, load_c
 from holonom.program.heyoka_function import COMPACT_FROM, heyoka_expressions, import_heyoka
 from holonom.program.motion_program import Program
-from holonom.program.timing import Timer
+from holonom.program.timing import Batch, Timer, shortest_times
 
 LINKS = (1, 2, 4, 8, 16, 32, 64)
 SECONDS = 30.0  # a peer that takes longer is not asked for a longer chain
@@ -84,13 +84,18 @@ def measurements() -> Iterator[Row]:
 
 def by_hand(links: int, points: NDArray[np.float64], timer: Timer) -> Row:
     """The row of chain.c, which says how many operations it takes."""
-    one = hand_written(links)
-    return Row(BY_HAND, links, None, None, 23 * links - 9, timer.one_point(one, points[:, 0].copy(), 3 * links))
+    one = timer.batch(hand_written(links), points[:, 0].copy(), 3 * links)
+    return Row(BY_HAND, links, None, None, 23 * links - 9, seconds_a_call(one))
 
 
 def hand_written(links: int) -> Callable[..., None]:
     """The compiled function of chain.c."""
     return load_c(f"#define LINKS {links}\n" + HAND_WRITTEN.read_text(encoding="utf-8")).chain
+
+
+def seconds_a_call(batch: Batch) -> float:
+    """The shortest time of one call."""
+    return shortest_times({0: batch})[0]
 
 
 def compiled_rows(
@@ -106,7 +111,7 @@ def compiled_rows(
     function = compile_c(program)
     seconds = time.perf_counter() - start
     require_agreement(method, links, function, given[:, 0].copy(), points[:, 0].copy())
-    one = timer.one_point(function.one, given[:, 0].copy(), len(program.outputs))
+    one = seconds_a_call(timer.evaluation(function, given[:, 0].copy()))
     yield row(seconds, operations, one, many_points(function, given))
     if method == OURS:
         start = time.perf_counter()
