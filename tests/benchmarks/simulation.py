@@ -82,18 +82,26 @@ def measure(directory: Path) -> None:
 
 
 def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Setting]], dict[str, str]]:
-    """The last two settings of each method, timed in turns; none, and the reason, where it does not get there."""
+    """The last two settings of each method, timed in turns; none, and the reason, where it does not get there.
+
+    Our engines without projection are timed at the tolerances of those with projection, too.
+    """
     reference = find_reference(problem, [motion.until], DIGITS)
     settings: dict[str, list[Setting]] = {}
     reasons: dict[str, str] = {}
     for name, peer in PEERS.items():
-        settings[name], reasons[name] = tighten(partial(peer, motion, problem), motion, reference, TOLERANCES)
+        found, reasons[name] = tighten(partial(peer, motion, problem), motion, reference, TOLERANCES)
+        settings[name] = last_two(found, reasons[name])
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
     for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, in_c, TOLERANCES)):
+        compared_at: set[float] = set()
         for name, stabilization in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
             prepare = partial(holonom, motion, problem, partial(set_up, stabilization=stabilization))
-            settings[name], reasons[name] = tighten(prepare, motion, reference, tolerances)
+            found, reasons[name] = tighten(prepare, motion, reference, tolerances)
+            last = last_two(found, reasons[name])
+            settings[name] = [s for s in found if s.tolerance in compared_at and s not in last] + last
+            compared_at |= {s.tolerance for s in last}
     return with_turns(settings), reasons
 
 
@@ -129,7 +137,7 @@ def holonom(
 def tighten(
     prepare: Callable[[], Prepared], motion: Motion, reference: Reference, tolerances: Sequence[float]
 ) -> tuple[list[Setting], str]:
-    """Tighten the tolerance until the error is small enough."""
+    """Tighten the tolerance until the error is small enough; the reason says why it does not get so."""
     begun = time.perf_counter()
     at_tolerance = prepare()
     prepared = time.perf_counter() - begun
@@ -138,14 +146,19 @@ def tighten(
         try:
             setting = first_run(at_tolerance, tolerance, motion, reference)
         except HolonomError as refusal:
-            return [], str(refusal)
+            return found, str(refusal)
         found.append(replace(setting, compile=prepared + setting.compile))
         if setting.error <= ERROR:
-            return found[-2:], ""
+            return found, ""
         if setting.seconds > PATIENCE:
             break
     last = found[-1]
-    return [], f"error {last.error:.1g} after {last.seconds:.2g} s at tolerance {last.tolerance:g}"
+    return found, f"error {last.error:.1g} after {last.seconds:.2g} s at tolerance {last.tolerance:g}"
+
+
+def last_two(found: Sequence[Setting], reason: str) -> list[Setting]:
+    """The last two settings of a method that gets there."""
+    return [] if reason else list(found[-2:])
 
 
 def first_run(at_tolerance: Prepared, tolerance: float, motion: Motion, reference: Reference) -> Setting:
@@ -181,9 +194,9 @@ def seconds_of(run: Run) -> Batch:
 
 def row_of(motion: Motion, name: str, settings: Sequence[Setting], reason: str) -> Row:
     """A method's time at `ERROR`, interpolated between its two settings."""
-    if not settings:
+    if reason:
         return Row(motion.name, name, None, None, reason)
-    first, last = settings[0], settings[-1]
+    first, last = settings[-2:][0], settings[-1]
     if first is last or first.error <= last.error:
         return Row(motion.name, name, last.seconds, last.compile)
     share = math.log(first.error / ERROR) / math.log(first.error / last.error)
