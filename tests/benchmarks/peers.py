@@ -108,20 +108,11 @@ def symengine(links: int, seconds: float) -> Program:
 def casadi(links: int, seconds: float) -> Program:
     """CasADi: SX, the Schur complement, sparse LDL^T; its own C."""
     import casadi as ca
+    from casadi_functions import chain_of
 
     del seconds
-    coordinates, velocities, _ = chain.names(links)
-    t, q, v = ca.SX.sym("t"), ca.SX.sym("q", len(coordinates)), ca.SX.sym("v", len(velocities))
-    controls = ca.SX.sym("u", 3)
-    state, rate = ca.vertcat(q, v, controls[:2]), ca.vertcat(v, ca.SX(v.numel(), 1), controls[1:])
-    f = ca.vertcat(*chain.constraints(ca.vertsplit(q), controls[0]))
-    jacobian = ca.jacobian(f, q)
-    curvature = ca.jtimes(ca.jtimes(f, state, rate), state, rate)
-    applied = ca.DM([0, -float(chain.GRAVITY)] * links)
-    diagonal, factor, order = ca.ldl(jacobian @ jacobian.T)
-    multipliers = ca.ldl_solve(-(curvature + jacobian @ applied), diagonal, factor, order)
-    results = ca.vertcat(applied + jacobian.T @ multipliers, multipliers)
-    function = ca.Function("chain", [ca.vertcat(t, q, v, controls)], [results])
+    inputs, results = chain_of(links)
+    function = ca.Function("chain", [inputs], [results])
     return _program("CasADi", links, instructions(function, chain.inputs(links)))
 
 

@@ -2,25 +2,23 @@
 
     python tests/benchmarks/ring.py build/benchmarks
 
-Ours is the motion program of `examples/ring.mac`, by the whole command. CasADi starts from the same T and f. Its
-inertia has no inverse in Euler parameters: as ours does, it adds J^T J of the unit lengths to it, solves by its sparse
-LDL^T of the Schur complement, and eliminates common subexpressions by `cse`. Both programs are compiled by the same
-compiler with the same options, and compared at a random point before they are timed.
+Ours is the motion program of `examples/ring.mac`, by the whole command. CasADi starts from the same T and f, in a
+process of its own (`casadi_functions.py`). Both programs are compiled by the same compiler with the same options, and
+compared at a random point before they are timed.
 """
 
 import json
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from math import log
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import casadi as ca
 import numpy as np
 from peers import instructions
-from timing import program_of_command, write_report
+from timing import CASADI, cost_of, program_of_command, write_report
 
 from holonom.program.c_function import compile_c
 from holonom.program.motion_program import Program, read_program
@@ -30,7 +28,6 @@ EXAMPLE = Path(__file__).parents[2] / "examples" / "ring.mac"
 BODIES = (4, 8, 16, 32, 64)
 LARGEST_COMPILED = 16  # bodies; the C compiler takes minutes for the next
 GROWTH, OPERATIONS, EVALUATION = 1.3, 1.0, 1.1  # bars
-INERTIA = (0.1, 0.05, 0.1)
 TOLERANCE = 1e-8
 
 
@@ -50,7 +47,7 @@ class Row:
 def measured(bodies: int) -> Row:
     """One row of the table."""
     seconds, ours = our_program(EXAMPLE, bodies)
-    theirs_seconds, theirs = casadi_program(joints_of_ring, bodies, ours)
+    theirs_seconds, theirs = casadi_program("ring", bodies, ours)
     times = (None, None) if bodies > LARGEST_COMPILED else evaluations(ours, theirs)
     return Row(bodies, seconds, ours.operations, theirs_seconds, theirs.operations, *times)
 
@@ -61,25 +58,12 @@ def our_program(scene: Path, bodies: int) -> tuple[float, Program]:
     return seconds, read_program(text)
 
 
-def casadi_program(joints_of: Callable, bodies: int, ours: Program) -> tuple[float, Program]:
-    """Processor seconds of CasADi, and its program of bodies with joints, with the inputs and outputs of ours."""
-    begun = time.process_time()
-    t, q, v = ca.SX.sym("t"), ca.SX.sym("q", 7 * bodies), ca.SX.sym("v", 7 * bodies)
-    kinetic, lengths, joints = description(joints_of, bodies, q, v)
-    momenta = ca.gradient(kinetic, v)
-    mass = ca.jacobian(momenta, v)
-    force = ca.gradient(kinetic, q) - ca.jtimes(momenta, q, v)
-    f = ca.vertcat(lengths, joints)
-    jacobian = ca.jacobian(f, q)
-    curvature = ca.jtimes(ca.jtimes(f, q, v), q, v)
-    unit = jacobian[:bodies, :]
-    mass, force = mass + unit.T @ unit, force - unit.T @ curvature[:bodies]
-    inverse_of_mass = ldl_solver(mass)
-    by_mass = inverse_of_mass(ca.horzcat(jacobian.T, force))
-    across, free = by_mass[:, :-1], by_mass[:, -1]
-    multipliers = -ldl_solver(jacobian @ across)(jacobian @ free + curvature)
-    results = ca.cse(ca.vertcat(free + across @ multipliers, multipliers))
-    function = ca.Function("ring", [ca.vertcat(t, q, v)], [results])
+def casadi_program(system: str, bodies: int, ours: Program) -> tuple[float, Program]:
+    """Processor seconds of CasADi's process, and its program with the inputs and outputs of ours."""
+    with TemporaryDirectory() as directory:
+        file = Path(directory, "function.casadi")
+        seconds, _ = cost_of(sys.executable, CASADI, system, str(bodies), str(file))
+        function = ca.Function.load(str(file))
     document = {
         "format": "holonom-program",
         "version": 2,
@@ -92,45 +76,7 @@ def casadi_program(joints_of: Callable, bodies: int, ours: Program) -> tuple[flo
         "assignments": instructions(function, ours.inputs),
         "outputs": {name: f"out{index}" for index, name in enumerate(ours.outputs)},
     }
-    return time.process_time() - begun, read_program(json.dumps(document))
-
-
-def ldl_solver(matrix):
-    """The solve by a sparse LDL^T in CasADi's own order."""
-    diagonal, factor, order = ca.ldl(matrix)
-    return lambda sides: ca.sparsify(ca.ldl_solve(sides, diagonal, factor, order))
-
-
-def description(joints_of: Callable, bodies: int, q, v):
-    """T, |e|^2 - 1 of each body, and the joints between places and axes of bodies."""
-    kinetic, lengths, placed = 0, [], []
-    for k in range(bodies):
-        place, e, velocity, rate = (
-            q[7 * k : 7 * k + 3],
-            q[7 * k + 3 : 7 * k + 7],
-            v[7 * k : 7 * k + 3],
-            v[7 * k + 3 : 7 * k + 7],
-        )
-        e0, e1, e2, e3 = ca.vertsplit(e)
-        in_body = ca.vertcat(ca.horzcat(-e1, e0, e3, -e2), ca.horzcat(-e2, -e3, e0, e1), ca.horzcat(-e3, e2, -e1, e0))
-        spin = 2 * in_body @ rate
-        kinetic += (ca.dot(velocity, velocity) + ca.dot(ca.DM(INERTIA) * spin, spin)) / 2
-        lengths.append(ca.dot(e, e) - 1)
-        axis = ca.vertcat(2 * (e1 * e2 - e0 * e3), e0**2 - e1**2 + e2**2 - e3**2, 2 * (e2 * e3 + e0 * e1))
-        placed.append((place, axis))
-    return kinetic, ca.vertcat(*lengths), ca.vertcat(*joints_of(placed))
-
-
-def joints_of_ring(placed: list) -> list:
-    """The end of each body less the beginning of the next, as `examples/ring.mac` has them."""
-    ends = [(c - half * axis, c + half * axis) for half, (c, axis) in zip(half_sides(len(placed)), placed, strict=True)]
-    return [end - beginning for (_, end), (beginning, _) in zip(ends, [*ends[1:], ends[0]], strict=True)]
-
-
-def half_sides(bodies: int) -> list[float]:
-    """Of the polygon whose corners the example puts on a circle."""
-    angles = [2 * np.arctan(round(1000 * np.tan(np.pi * k / (4 * bodies))) / 1000) for k in range(bodies + 1)]
-    return [float(np.sin(2 * (b - a))) for a, b in pairwise(angles)]
+    return seconds, read_program(json.dumps(document))
 
 
 def evaluations(ours: Program, theirs: Program) -> tuple[float, float]:

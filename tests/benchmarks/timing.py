@@ -14,6 +14,7 @@ from types import FrameType
 import numpy as np
 from numpy.typing import NDArray
 
+CASADI = str(Path(__file__).with_name("casadi_functions.py"))
 REPEATS = 7  # the shortest time counts: what disturbs a measurement makes it longer
 
 
@@ -47,7 +48,11 @@ def program_of_command(scene: Path, setting: str) -> tuple[str, float, float]:
 
 def cost_of_command(*arguments: str) -> tuple[float, float]:
     """Processor seconds of a whole command and of all that it starts, and the MiB of the largest process."""
-    command = [sys.executable, "-m", "holonom", *arguments]
+    return cost_of(sys.executable, "-m", "holonom", *arguments)
+
+
+def cost_of(*command: str) -> tuple[float, float]:
+    """Processor seconds of a process and of all that it starts, and the MiB of the largest."""
     process = subprocess.Popen(command, env=as_installed(), stdout=subprocess.DEVNULL)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)

@@ -33,16 +33,10 @@ class Row:
 def measured(bodies: int) -> Row:
     """One row of the table."""
     seconds, ours = our_program(SCENE, bodies)
-    casadi_seconds, theirs = casadi_program(joints_of_tree, bodies, ours)
+    casadi_seconds, theirs = casadi_program("tree", bodies, ours)
     if bodies == BODIES[0]:
         evaluations(ours, theirs)  # which ends where their accelerations differ
     return Row(bodies, seconds, ours.operations, casadi_seconds, theirs.operations)
-
-
-def joints_of_tree(placed: list) -> list:
-    """The end of the body above less the beginning of each, as `tree.mac` has them."""
-    ends = [0, *(centre + axis / 2 for centre, axis in placed)]
-    return [ends[k // 2] - centre + axis / 2 for k, (centre, axis) in enumerate(placed, start=1)]
 
 
 def exponent(a: Row, b: Row) -> float:
