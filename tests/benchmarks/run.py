@@ -51,7 +51,7 @@ class Row:
     many_points: float | None = None
 
 
-def measure(directory: Path) -> None:
+def main(directory: Path) -> None:
     """Measure, then write ``chain.json``, ``chain.txt`` and ``chain.svg`` into a directory."""
     rows = list(measurements())
     report = table(rows) + "\n" + "\n".join(summary(rows)) + "\n"
@@ -204,4 +204,4 @@ def _shown(value: float | None, form: str, factor: float = 1.0) -> str:
 
 
 if __name__ == "__main__":
-    measure(Path(sys.argv[1]))
+    main(Path(sys.argv[1]))

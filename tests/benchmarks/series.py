@@ -38,7 +38,7 @@ class Row:
     expand: float | None
 
 
-def measure(directory: Path) -> None:
+def main(directory: Path) -> None:
     """Measure, then write ``series.json``, ``series.txt`` and ``series.svg`` into a directory."""
     rows = list(measurements())
     report = table(rows) + "\n" + "\n".join(summary(rows)) + "\n"
@@ -129,4 +129,4 @@ def draw(rows: Sequence[Row], file: Path) -> None:
 
 
 if __name__ == "__main__":
-    measure(Path(sys.argv[1]))
+    main(Path(sys.argv[1]))

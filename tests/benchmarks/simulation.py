@@ -67,7 +67,7 @@ class Row:
     reason: str = ""
 
 
-def measure(directory: Path) -> None:
+def main(directory: Path) -> None:
     """Measure, then write ``simulation.json``, ``simulation.txt`` and ``simulation.svg`` into a directory."""
     rows: list[Row] = []
     bars: list[Bar] = []
@@ -220,4 +220,4 @@ def same_settings(settings: Mapping[str, Sequence[Setting]], one: str, other: st
 
 
 if __name__ == "__main__":
-    measure(Path(sys.argv[1]))
+    main(Path(sys.argv[1]))
