@@ -250,6 +250,31 @@ def test_outputs_are_unique_once_a_redundant_joint_is_released():
     assert rows(motion, "R", 3)[2, -1] == pytest.approx(200)
 
 
+SHARED = """
+bob   : planar_body(1, 1, [x, y], phi)$
+pivot : revolute_joint(bob, [0, 0])$
+rail  : point_on_line(bob, marker(ground, [0, 0], [1, 0]))$
+system : holonomic_system(assembly(bob, pivot, rail, uniform_gravity(10, bob), applied_force([3, 0], bob)))$
+run : holonomic_scene(system, initial_state = [x = 0, y = 0, phi = 0, dot(phi) = 1], time_span = [0, 1], {released}
+  observe = [trajectory, multipliers, P = reaction(pivot), R = reaction(rail), S = P[2] + R[2]])$
+"""
+
+
+def test_joints_that_share_a_constraint_share_its_force():
+    motion = holonom.system(SHARED.format(released="")).simulate(samples=2)
+    assert motion["S"] == pytest.approx([10, 10])  # and not the weight for each
+    assert motion.report.undetermined == ("P[2]", "R[2]")
+    assert list(motion.report.joints.values()) == ["pivot", "pivot", "rail"]
+
+
+def test_shared_constraint_stays_when_one_of_its_joints_is_released():
+    """The rail holds the bob, which 3 moves along it for 1/2."""
+    motion = holonom.system(SHARED.format(released="released = [pivot = t - 1/2],")).simulate(samples=3)
+    assert motion["y"] == pytest.approx([0, 0, 0])
+    assert motion["x"] == pytest.approx([0, 0, 3 / 8])
+    assert motion["R[2]"][-1] == pytest.approx(10)
+
+
 def test_gear_turns_rotors_by_its_moments():
     """The torque T turns J1 and, geared by r1/r2 = 2/3, J2: in one coordinate (J1 + 4/9 J2) a = T."""
     scene = holonom.system("""
