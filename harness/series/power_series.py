@@ -262,7 +262,7 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
                 "its radius of convergence is %(radius)s, %(evidence)s; a higher order determines it more closely",
                 start=motion.t0,
                 time=f"{float(time):g}",
-                radius=f"{radius.estimate:.6g}",
+                radius=radius.shown,
                 evidence=described(radius),
             ),
         )
@@ -276,7 +276,7 @@ def _require_inside(motion: MotionSeries, time: Fraction, distance: float) -> No
             "its radius of convergence is %(radius)s, %(evidence)s; %(reason)s",
             start=motion.t0,
             time=f"{float(time):g}",
-            radius=f"{radius.estimate:.6g}",
+            radius=radius.shown,
             evidence=described(radius),
             reason=reason,
         ),

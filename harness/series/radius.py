@@ -81,7 +81,14 @@ class Radius:
         compare=False,
     )
 
+    @property
+    def shown(self) -> str:
+        """Estimate, in the digits that its uncertainty leaves."""
+        digits = math.log10(self.estimate / self.uncertainty) if self.uncertainty else MOST_DIGITS
+        return f"{self.estimate:.{min(max(math.floor(digits), 1), MOST_DIGITS)}g}"
 
+
+MOST_DIGITS = 8  # of an estimate that is shown
 NEARER = 0.9  # of the estimate: where a weak singularity may hide
 
 POLYNOMIAL = Radius(None, None, (), translatable("infinite: the motion is a polynomial of the time"))
@@ -137,7 +144,7 @@ def described(radius: Radius) -> Message:
     if radius.located:
         return translatable("where the equations of motion are singular")
     return translatable(
-        "estimated from %(coefficients)s coefficients, whose fits differ by %(uncertainty)s; "
+        "estimated from %(coefficients)s coefficients, uncertain by %(uncertainty)s; "
         "a singularity at %(nearer)s of it that is weaker than %(unseen)s of the one found is not seen",
         coefficients=radius.coefficients,
         uncertainty=f"{radius.uncertainty:.1g}",

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from paper_series import paper_by_hand
 
-from holonom.series.radius import COMPLEX_PAIR, REAL_TIME, estimate_radii, estimate_radius
+from holonom.series.radius import COMPLEX_PAIR, REAL_TIME, Radius, estimate_radii, estimate_radius
 
 ORDERS = (*range(8, 30), 32, 36, 40, 45, 50, 60, 80, 100, 120, 160)
 HIGHEST = max(ORDERS)
@@ -186,3 +186,16 @@ def test_many_series_at_once_have_the_radii_of_each_to_the_last_bit():
     assert found[1].estimate == pytest.approx(1.3, rel=1e-9)
     alone = np.moveaxis(motions[:, :1], 0, 2)
     assert [radius.estimate is None for radius in estimate_radii(alone)[9:15]] == [True] * 6
+
+
+@pytest.mark.parametrize(
+    ("estimate", "uncertainty", "shown"),
+    [
+        (0.92313086, 0.29, "0.9"),
+        (14.2, 9.0, "1e+01"),
+        (0.959279812, 7e-8, "0.9592798"),
+        (0.768114574787, 0.0, "0.76811457"),
+    ],
+)
+def test_no_more_digits_are_shown_than_are_certain(estimate, uncertainty, shown):
+    assert Radius(estimate, uncertainty, (), "").shown == shown
