@@ -51,10 +51,13 @@ def show_linearization(console: "Console", found: "Linearization") -> None:
             seen = _rounded(value, largest)
             ratio = f"{damping:.4g}" if seen and seen.real else "0"
             table.add_row(_pair(seen), f"{abs(seen) / (2 * pi):.6g}", ratio, *map(_number, mode[: len(shown)]))
+    if not (m := len(found.leading)):
+        console.print(_title(found))
+        console.print("No degrees of freedom: the constraints and the controls determine the motion.")
+        return
     console.print(table)
-    m = len(found.leading)
     leading = ", ".join(found.leading[:SHOWN_COORDINATES]) + (", ..." if m > SHOWN_COORDINATES else "")
-    console.print(f"{counted(m, 'degree')} of freedom, by {leading or 'none'}; {2 * m} eigenvalues.")
+    console.print(f"{counted(m, 'degree')} of freedom, by {leading}; {2 * m} eigenvalues.")
     if found.at_rest and found.controls:
         rank = found.controllable_rank
         how_many = "an unknown number" if rank is None else rank

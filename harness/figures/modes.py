@@ -48,7 +48,7 @@ def modes_figure(linear: "Linearization") -> "Figure":
     HolonomError
         Matplotlib is not installed.
     """
-    values = _rounded(linear.eigenvalues)
+    values = _rounded(linear.eigenvalues, linear.eigenvalue_errors)
     shown = [k for k, value in enumerate(values) if value.imag >= 0][:MOST_MODES]
     rows = -(-(1 + len(shown)) // COLUMNS)
     with figure_style():
@@ -59,19 +59,22 @@ def modes_figure(linear: "Linearization") -> "Figure":
         first.plot(values.real, values.imag, "x", color=VERMILION)
         if not values.real.any():
             first.set_xlim(-1, 1)
-        first.set_title(gettext("eigenvalues"))
+        first.set(title=gettext("eigenvalues"), xlabel=gettext("real part"), ylabel=gettext("imaginary part"))
         for panel, k in zip(panels, shown, strict=False):
             panel.set_title(_written(values[k]))
             draw = _draw_stems if linear.drawing is None else _draw_shapes
             draw(panel, linear, linear.modes[:, k])
         for panel in panels[len(shown) :]:
             panel.set_axis_off()
+        stems = {name: stem for panel in panels for stem, name in zip(*panel.get_legend_handles_labels(), strict=True)}
+        if stems:
+            figure.legend([*stems.values()], [*stems], loc="outside lower center", ncols=2)
     return figure
 
 
-def _rounded(values: NDArray) -> NDArray:
+def _rounded(values: NDArray, errors: NDArray) -> NDArray:
     """Return eigenvalues with zeros for parts that are rounding errors."""
-    least = ROUNDING * np.max(np.abs(values), initial=0.0)
+    least = np.where(np.abs(values) <= errors, np.inf, ROUNDING * np.max(np.abs(values), initial=0.0))
     return np.where(np.abs(values.real) > least, values.real, 0) + 1j * np.where(
         np.abs(values.imag) > least, values.imag, 0
     )
@@ -106,7 +109,8 @@ def _numbers(linear: "Linearization", deviations: NDArray) -> list[NDArray]:
 
 def _draw_stems(panel: "Axes", linear: "Linearization", mode: NDArray) -> None:
     places = np.arange(len(mode))
-    for part, colour, name in ((mode.real, BLUE, "Re"), (mode.imag, VERMILION, "Im")):
+    parts = (mode.real, BLUE, gettext("real part")), (mode.imag, VERMILION, gettext("imaginary part"))
+    for part, colour, name in parts:
         if part.any():
             panel.stem(places, part, linefmt=colour, basefmt=INK, markerfmt="o", label=name)
     panel.set_xticks(places, [with_symbols(name) for name in linear.coordinates], rotation=90, fontsize="x-small")

@@ -462,3 +462,31 @@ def test_a_motion_is_linearised_before_a_release():
     with pytest.raises(HolonomError) as refused:
         scene.linearize(at=Fraction(3, 4))
     assert refused.value.kind is ErrorKind.NOT_ANALYTIC
+
+
+CHARGE = """
+cone : holonomic_system(
+  coordinates = [x, y, z], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2 + 3*(x*dot(y) - y*dot(x))/2,
+  potential_energy = [weight = 10*z], forces = [electric = [cos(t), 0, 0]], constraints = [x^2 + y^2 - z^2])$
+orbit : holonomic_scene(cone, initial_state = [x = 3, y = 4, z = 5, dot(x) = -2, dot(y) = 1], time_span = [0, 5])$
+"""
+
+
+def test_the_figure_shows_rounded_zeros_as_zero_and_names_the_parts():
+    found = holonom.system(CHARGE).linearize(at=1)
+    assert found.eigenvalues[:2].all()
+    assert (abs(found.eigenvalues) <= found.eigenvalue_errors).tolist() == [True, True, False, False]
+    figure = found.plot().figure
+    values, *panels = figure.axes
+    assert [panel.get_title("left") for panel in panels[:2]] == ["0", "0"]
+    assert all([values.get_xlabel(), values.get_ylabel()])
+    assert len(figure.legends[0].get_texts()) == 2
+
+
+def test_a_driven_linkage_has_no_table_of_modes(holonom_here, tmp_path):
+    (tmp_path / "crank.mac").write_text(
+        'load("holonom.mac")$ crank : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2,'
+        " constraints = [x - u])$ turn : holonomic_scene(crank, control_law = [u = t], initial_state = [])$"
+    )
+    shown = holonom_here("linearize", tmp_path / "crank.mac")
+    assert (shown.returncode, len(shown.stdout.splitlines())) == (0, 2)
