@@ -234,23 +234,19 @@ def _substituted(expression: Expression, known: Mapping[str, Expression]) -> Exp
     match expression:
         case Name(text):
             return known.get(text, expression)
-        case Call(Operation.MULTIPLY, arguments) if _vanishing_weight(arguments, known):
-            return ZERO
         case Call(operation, arguments) if not known.keys().isdisjoint(expression.names):
-            return folded(operation, [_substituted(argument, known) for argument in arguments])
+            values = [_substituted(each, known) if _is_weight(each, operation, known) else None for each in arguments]
+            if ZERO in values:  # all terms but one of a law in many parts
+                return ZERO
+            found = zip(arguments, values, strict=True)
+            return folded(operation, [_substituted(each, known) if value is None else value for each, value in found])
         case _:
             return expression
 
 
-def _vanishing_weight(arguments: tuple[Expression, ...], known: Mapping[str, Expression]) -> bool:
-    """Return True if a factor made of known names alone is zero.
-
-    It removes all terms but one of a law in many parts.
-    """
-    return any(
-        isinstance(each, Call) and each.names <= known.keys() and _substituted(each, known) == ZERO
-        for each in arguments
-    )
+def _is_weight(factor: Expression, operation: Operation, known: Mapping[str, Expression]) -> bool:
+    """Return True for a factor made of known names alone."""
+    return operation is Operation.MULTIPLY and isinstance(factor, Call) and factor.names <= known.keys()
 
 
 def with_factors(program: Program, factors: Sequence[str]) -> Program:

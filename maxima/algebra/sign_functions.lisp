@@ -97,16 +97,31 @@
                       (and (char= (char (symbol-name operator) 0) #\$) (fboundp operator)))))
            (some #'calls-p (cdr e)))))
 
-;; A branch of weight zero is dropped where the signs are put in; elsewhere it has a value, too.
-(defun conditional-with-signs (clauses &optional (outer 1) outer-names)
-  "Clauses are condition, value, condition, value, ... as Maxima keeps them. outer: the weight of them all."
-  (let ((weight (condition-weight (first clauses))) (value (with-signs (second clauses))))
-    (if (null value) ($refuse '$if_without_else))
-    (if (eql weight 1)
-        (restricted value outer outer-names)
-        (let ((names (append (cdr ($listofvars (first clauses))) outer-names)) (other (sub 1 weight)))
-          (add (mul weight (restricted value (mul outer weight) names))
-               (mul other (conditional-with-signs (cddr clauses) (mul outer other) names)))))))
+;; A branch of weight zero is dropped where the signs are put in; elsewhere it has a value, too. Many branches are added
+;; by halves: the depth of the sum grows as the logarithm of their number.
+(defun conditional-with-signs (clauses) (values (sum-of-branches (weighted-branches clauses 1 nil))))
+
+(defun weighted-branches (clauses outer outer-names)
+  "The branches as (weight . value). Clauses are condition, value, ... as Maxima keeps them. outer: their weight."
+  (destructuring-bind (condition value &rest others) clauses
+    (let ((weight (condition-weight condition)))
+      (cond ((null value) ($refuse '$if_without_else))
+            ((and (eql weight 1) (consp value) (eq (caar value) 'mcond))
+             (weighted-branches (cdr value) outer outer-names))
+            ((eql weight 1) (acons 1 (restricted (with-signs value) outer outer-names) nil))
+            (t (let ((names (append (cdr ($listofvars condition)) outer-names)))
+                 (acons weight
+                        (restricted (with-signs value) (mul outer weight) names)
+                        (weighted-branches others (mul outer (sub 1 weight)) names))))))))
+
+(defun sum-of-branches (branches)
+  "The value of the first branch whose weight is 1, or 0; and 1 where there is none, otherwise 0."
+  (if (rest branches)
+      (let ((middle (floor (length branches) 2)))
+        (multiple-value-bind (value rest) (sum-of-branches (subseq branches 0 middle))
+          (multiple-value-bind (later-value later-rest) (sum-of-branches (subseq branches middle))
+            (values (add value (mul rest later-value)) (mul rest later-rest)))))
+      (destructuring-bind (weight . value) (first branches) (values (mul weight value) (sub 1 weight)))))
 
 (defun restricted (e weight names)
   "The expression whose partial functions of what the condition decides have a value where its weight is zero."

@@ -42,6 +42,17 @@ def call(operation, *arguments):
     return Call(Operation[operation], arguments)
 
 
+def test_weights_within_weights_are_computed_once():
+    """Twice at each level is 2^60 times."""
+    nested = X
+    for _ in range(60):
+        nested = Call(Operation.MULTIPLY, (Call(Operation.ADD, (Name("m"), nested)), Fraction(1, 2)))
+    found = with_numbers(
+        Program(None, "direct", "", ("x", "m"), (("w", nested),), {"w": Name("w")}), {"x": ONE, "m": ONE}
+    )
+    assert found.outputs == {"w": ONE}
+
+
 @pytest.mark.parametrize(
     ("factors", "expected"),
     [

@@ -214,6 +214,14 @@ def test_a_pulse_in_a_part_that_would_grow_later_was_skipped(engine):
     assert report.velocities["dot(x)"] == pytest.approx(1 / 41 + math.sqrt(math.pi) / 5000, rel=DIGITS[engine])
 
 
+@pytest.mark.parametrize("word", ["elseif", "else if"])
+def test_a_law_in_sixty_parts_was_too_deep_for_a_program(word):
+    parts = f" {word} ".join(f"t < {k} then {k}" for k in range(1, 60))
+    report = end_of(mass(f"if {parts} else 0", end="3"), EngineName.TAYLOR)
+    assert report.velocities["dot(x)"] == pytest.approx(1 + 2 + 3, rel=1e-15)
+    assert [s.t for s in report.switchings] == [1, 2]
+
+
 @pytest.mark.long
 def test_a_pulse_beside_faint_oscillations_was_skipped():
     """Steps at a tolerance of 1e-9 do not follow the oscillations."""
