@@ -259,7 +259,8 @@ before all, outcome, mark)."
     (let* ((file (if *statement-start* (namestring (truename *statement-stream*)) name))
            (line (if *statement-start* (line-at *statement-start* file) 0)))
       (with-open-file (stream outcome :direction :output :if-exists :supersede)
-        (format stream "~A~%~A~%~A~%~D~%~A~%~A~%~A~%" mark kind file line refusal message mark)))))
+        (format stream "~A~%~A~%~A~%~D~%~A~%~A~%~A~%"
+                mark kind (substitute #\Space #\Newline file) line refusal message mark)))))
 
 (defun leave (status)
   (finish-output)

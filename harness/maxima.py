@@ -495,7 +495,8 @@ def _read_ending(run: Run, what: str, broken_off: Ending) -> Ending | None:
         return None if kind == FINISHED else broken_off
     if kind not in ENDINGS or not line.isdigit() or not REFUSAL.fullmatch(refusal):
         return Ending(ErrorKind.OUTPUT_TRUNCATED, str(run.file), OUTCOME)
-    own = running in (str(run.file.resolve()), str((run.directory / "file.mac").resolve()))
+    # `headless.lisp` makes one line of a name
+    own = running in (str(each.resolve()).replace("\n", " ") for each in (run.file, run.directory / "file.mac"))
     shown = str(run.file) if own else visible_line(running)
     place = shown if line == "0" else f"{shown}:{line}"
     try:

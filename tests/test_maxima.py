@@ -164,6 +164,13 @@ def test_a_name_with_blanks_quotes_and_accents(tmp_path):
     assert run_batch(file, "write") == "written \n"
 
 
+def test_an_error_in_a_file_with_a_line_end_in_its_name_is_found(tmp_path):
+    file = tmp_path / "two\nlines.mac"
+    file.write_text("x : 1$\nfoo(")
+    failure = failure_of(file)
+    assert (failure.kind, failure.place) == (ErrorKind.SYNTAX, f"{file}:2")
+
+
 def test_a_scene_finds_the_library(particle_record):
     assert '"holonom-record"' in particle_record
 
