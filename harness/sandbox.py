@@ -106,6 +106,10 @@ class Limits:
     sandbox: Sandbox = Sandbox.WHERE_POSSIBLE
     allow: tuple[Path, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sandbox", Sandbox(self.sandbox))  # its text, too, which no mode would be
+        object.__setattr__(self, "allow", tuple(map(Path, self.allow)))
+
 
 class LimitExceeded(Exception):
     """A process exceeded a limit and was ended.

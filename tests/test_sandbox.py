@@ -24,6 +24,14 @@ def run(program: str, directory: Path, limits: Limits = LIMITS) -> bytes:
     return bytes(printed)
 
 
+def test_a_sandbox_given_as_text_was_none():
+    limits = Limits(sandbox="required", allow=["data.csv"])
+    assert limits.sandbox is Sandbox.REQUIRED
+    assert limits.allow == (Path("data.csv"),)
+    with pytest.raises(ValueError, match="strict"):
+        Limits(sandbox="strict")
+
+
 def test_collects_all_that_is_printed(tmp_path):
     assert run("import sys; print('out', flush=True); print('err', file=sys.stderr)", tmp_path) == b"out\nerr\n"
 
