@@ -158,8 +158,9 @@ def read(each: Field, value: Any) -> Any:
     if kind is Fraction:
         return read_time(value, spelt_of(each))
     if kind is tuple:
-        names = value.split(",") if isinstance(value, str) else value
-        if not (isinstance(names, Iterable) and all(isinstance(name, str) for name in names)):
+        given = value.split(",") if isinstance(value, str) else value
+        names = tuple(given) if isinstance(given, Iterable) else (None,)
+        if not all(isinstance(name, str) for name in names):
             raise _unexpected(each, value, translatable("names"))
         return tuple(dict.fromkeys(name.strip() for name in names if name.strip()))
     expected = [EXPECTED[kind] for kind in _types(each) if kind is not NoneType]

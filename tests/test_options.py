@@ -13,7 +13,7 @@ from refusing import failing
 
 from holonom.cli.options import takes
 from holonom.failures import ErrorKind, HolonomError
-from holonom.options import option, options_of, spelt_of, takes_options
+from holonom.options import option, options_of, read, spelt_of, takes_options
 from holonom.program.request import Request
 from holonom.series.request import SeriesRequest
 from holonom.simulation.request import SimulationRequest
@@ -116,3 +116,8 @@ def test_numbers_of_numpy_are_read_as_pythons():
     made = Shop().toy(size=np.int64(3), price=np.float32(0.5))[0]
     assert (made.size, made.price) == (3, 0.5)
     assert (type(made.size), type(made.price)) == (int, float)
+
+
+def test_names_of_a_generator_were_lost():
+    names = options_of(SimulationRequest, "sensitivities")[0]
+    assert read(names, (name for name in ["m", "g"])) == ("m", "g")
