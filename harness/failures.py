@@ -31,6 +31,7 @@ class ErrorKind(Enum):
 
     FILE_MISSING = ("file not found{detail}", "give the path of a scene, for example examples/paper/paper.mac")
     FILE_UNREADABLE = ("the file cannot be read: {detail}", "give the path of a readable Maxima file")
+    FILE_CHANGED = ("the file has changed since its first use", "load it again")
     TOO_MUCH_BESIDE = (
         "{detail} that end in .mac, .lisp or .csv are in the folder of the scene",
         "put the scene and the files that it reads into a folder of their own",

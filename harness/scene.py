@@ -6,6 +6,7 @@ Each result is computed once, at its first use. A scene does not change.
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -206,7 +207,7 @@ def sweep(
     axes = axes_of(grid, values, sample, size, seed)
     request = opened._request(options.pop("solve"))
     outputs = read_quantities([keep] if isinstance(keep, str) else keep)
-    wanted = SweepRequest(axes, outputs, **options)
+    wanted = SweepRequest(axes, outputs, called=str(opened.file), **options)
     directory = OwnDirectory() if output is None else None
     folder = directory.path if directory is not None else Path(output)
     found = run_sweep(opened._source, request, wanted, folder, opened.limits)
@@ -227,11 +228,22 @@ class Scene:
     """
 
     def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
-        self.file, self.settings, self.limits = file, dict(settings), limits
+        self.file, self._settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: OwnDirectory | None = None
-        self._source = Source(file, limits)
+        self._source = Source(file.absolute(), limits)  # which does not move with the working directory
         self._derived = Derivations(self._source)
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """Settings that the scene was opened with, a copy.
+
+        Examples
+        --------
+        >>> scene.settings
+        {}
+        """
+        return dict(self._settings)
 
     def with_settings(self, settings: Mapping[str, Number] | None = None, **more: Number) -> "Scene":
         """Return the scene with other parameter values.
@@ -554,7 +566,7 @@ class Scene:
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
-    def equilibria(self, options: dict[str, Any], **controls: float) -> "Equilibria":
+    def equilibria(self, options: dict[str, Any], **controls: Number) -> "Equilibria":
         """Search for states at rest for constant controls.
 
         The search is random. `Equilibria.complete` states whether it found all, if the equations are polynomial and
@@ -563,7 +575,7 @@ class Scene:
         Parameters
         ----------
         {options}
-        **controls : float
+        **controls : number
             Values of controls. Default: the initial values of their laws.
 
         Returns
@@ -583,7 +595,7 @@ class Scene:
         """
         from .stability.equilibria import find_equilibria
 
-        return find_equilibria(*self._linear_problem(), controls, **options)
+        return find_equilibria(*self._linear_problem(), _numbers(controls), **options)
 
     @naming_the_extra()
     def at_equilibrium(self, name: str) -> "Scene":
@@ -618,7 +630,9 @@ class Scene:
 
     @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
-    def branches(self, control: str, values: Sequence[float], options: dict[str, Any], **controls: float) -> "Branches":
+    def branches(
+        self, control: str, values: Sequence[Number], options: dict[str, Any], **controls: Number
+    ) -> "Branches":
         """Search for states at rest over the values of a control.
 
         The search is random and may miss equilibria.
@@ -627,10 +641,10 @@ class Scene:
         ----------
         control : str
             Name of the control that varies.
-        values : sequence of float
+        values : sequence of numbers
             Values of the control. States found at one value are initial guesses at the next.
         {options}
-        **controls : float
+        **controls : number
             Constant values of the other controls, as for `equilibria`.
 
         Returns
@@ -650,7 +664,10 @@ class Scene:
         """
         from .stability.branches import find_branches
 
-        return find_branches(*self._linear_problem(), control, values, controls, **options)
+        if isinstance(values, str):
+            raise HolonomError(ErrorKind.NOT_A_SETTING, detail=f"{control}={values}")
+        numbers = [_numbers({control: value})[control] for value in values]
+        return find_branches(*self._linear_problem(), control, numbers, _numbers(controls), **options)
 
     @naming_the_extra()
     @takes_options(*options_of(DaeRequest))
@@ -771,6 +788,11 @@ class Scene:
 
     def _problem(self, solve: Solve, digits: int) -> "MotionProblem":
         return self._derived.motion(self._request(solve), digits)
+
+
+def _numbers(settings: Mapping[str, Number]) -> dict[str, Fraction]:
+    """Return settings as the exact numbers that are written."""
+    return {name: Fraction(text) for name, text in _settings(settings).items()}
 
 
 def _settings(settings: Mapping[str, Number]) -> dict[str, str]:

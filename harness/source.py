@@ -6,10 +6,11 @@ A scene file runs in the sandbox.
 import warnings
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 
 from .description import Description, is_description, read_description
-from .failures import HolonomWarning
+from .failures import ErrorKind, HolonomError, HolonomWarning
 from .formats import Document
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS, read_maxima_text, run_scene
 from .sandbox import Limits
@@ -32,6 +33,11 @@ class Source:
         self.waiting: list[tuple[object, Mapping[str, str]]] = []  # questions of `documents.ask_later`
         self.answers: dict[object, object] = {}  # to these questions
 
+    @cached_property
+    def text(self) -> str:
+        """Text of the file at its first use, which all results belong to."""
+        return read_maxima_text(self.file)
+
     def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
         """Return the description of the file under settings.
 
@@ -47,10 +53,12 @@ class Source:
         Raises
         ------
         HolonomError
-            As `describe`.
+            As `describe`, or the file has changed since its first use.
         """
         key = tuple(sorted(settings.items()))
         if key not in self._described:
+            if read_maxima_text(self.file) != self.text:
+                raise HolonomError(ErrorKind.FILE_CHANGED, self.file)
             self._described[key] = describe(self.file, settings, self.limits)
         return self._described[key]
 

@@ -51,6 +51,9 @@ class OwnDirectory:
         self.path = stack.enter_context(private_directory())
         weakref.finalize(self, stack.close)
 
+    def __deepcopy__(self, known: dict[int, object]) -> "OwnDirectory":
+        return self  # a copy of a result reads the same files
+
 
 def remove_abandoned_directories() -> None:
     """Remove the private directories of processes that were killed."""

@@ -1,5 +1,8 @@
 """High-level API: one object for all that a scene can be asked."""
 
+import copy
+import gc
+import pickle
 import re
 import subprocess
 import sys
@@ -292,6 +295,8 @@ def test_a_program_s_forms_are_those_of_the_targets(pendulum, tmp_path):
 def test_a_motion_is_drawn_for_notebooks_and_files(pendulum, tmp_path):
     picture = pendulum.simulate(until=1, samples=11).plot()
     assert picture._repr_svg_().startswith("<?xml")
+    pendulum.simulate(until=1, samples=5).plot("dot(x)").save(tmp_path / "velocity.svg")
+    assert "dot(y)" not in (tmp_path / "velocity.svg").read_text()
     picture.save(tmp_path / "motion.png")
     assert (tmp_path / "motion.png").read_bytes().startswith(b"\x89PNG")
 
@@ -302,10 +307,59 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
     del scene
     assert file.exists()
     del other
-    import gc
-
     gc.collect()
     assert not file.exists()
+
+
+def test_a_copy_of_a_scene_reads_the_text_of_its_system_too():
+    scene = holonom.system(OSCILLATOR)
+    other = copy.deepcopy(scene)
+    del scene
+    gc.collect()
+    assert other.system.coordinates == ("x",)
+
+
+def test_a_scene_is_pickled_with_its_results(released):
+    released.linearize(), released.simulate(samples=2), released.dae()
+    other = pickle.loads(pickle.dumps(released))
+    assert other.simulate(samples=2)["x"].tolist() == released.simulate(samples=2)["x"].tolist()
+    assert other.linearize().A.tolist() == released.linearize().A.tolist()
+
+
+def test_settings_of_a_scene_do_not_change(released):
+    released.settings["k"] = "9"
+    assert released.settings == {}
+
+
+def test_results_with_arrays_are_compared_and_stored_in_sets(released):
+    for result in (released.simulate(samples=2), released.linearize(), *released.equilibria()):
+        assert result == result
+        assert result != copy.copy(result)
+        assert len({result, result}) == 1
+
+
+def test_results_of_two_texts_were_mixed(tmp_path):
+    file = tmp_path / "scene.mac"
+    file.write_text(f'load("holonom.mac")$ {OSCILLATOR}')
+    scene = holonom.load(file)
+    assert scene.system.parameters == ("m", "k")
+    file.write_text(f'load("holonom.mac")$ {OSCILLATOR.replace("k*x^2/2", "k*x^4/4")}')
+    with failing(ErrorKind.FILE_CHANGED):
+        scene.with_settings(k=9).system  # noqa: B018
+
+
+def test_a_scene_stays_in_its_folder(tmp_path, monkeypatch):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "scene.mac").write_text(f'load("holonom.mac")$ {OSCILLATOR}')
+    monkeypatch.chdir(tmp_path)
+    scene = holonom.load("scene.mac")
+    monkeypatch.chdir("elsewhere")
+    assert scene.system.coordinates == ("x",)
+
+
+def test_samples_beyond_double_precision_are_a_table(released):
+    table = released.simulate(until=1, samples=2, precision="quadruple").to_pandas()
+    assert table["x"].astype(float).iloc[-1] == pytest.approx(np.cos(2))
 
 
 def test_in_python_advice_names_arguments_and_no_options(released):

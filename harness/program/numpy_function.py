@@ -31,7 +31,10 @@ class NumpyFunction:
     def __init__(self, program: Program) -> None:
         self.inputs = program.inputs
         self.outputs = tuple(program.outputs)
-        self._run = _compiled(program)
+        self._program, self._run = program, _compiled(program)
+
+    def __reduce__(self) -> tuple[type["NumpyFunction"], tuple[Program]]:
+        return NumpyFunction, (self._program,)
 
     def __call__(self, inputs: Sequence[ArrayLike]) -> NDArray[np.float64]:
         """Evaluate the program at each point.

@@ -126,7 +126,7 @@ class SimulationDocument:
     )
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)  # arrays have no one answer to ==
 class Sampled:
     """Consecutive samples of a motion."""
 
@@ -171,7 +171,7 @@ class Sampled:
         return {f"residual.{name}": samples for name, samples in self.residuals.items()}
 
 
-@dataclass(frozen=True, repr=False, kw_only=True)
+@dataclass(frozen=True, repr=False, eq=False, kw_only=True)
 class Simulation(Sampled, Shown):
     """A simulated motion with its samples."""
 
@@ -214,7 +214,8 @@ class Simulation(Sampled, Shown):
         Returns
         -------
         pandas.DataFrame
-            A row for each time, a column for each other quantity.
+            A row for each time, a column for each other quantity. Numbers that pandas does not have, those beyond
+            extended precision, are objects.
 
         Raises
         ------
@@ -225,15 +226,16 @@ class Simulation(Sampled, Shown):
             from pandas import DataFrame
         except ImportError:
             raise missing_package("pandas") from None
-        return DataFrame(dict(self.columns())).set_index("t")
+        known = {name: each if each.dtype.isbuiltin == 1 else each.astype(object) for name, each in self.columns()}
+        return DataFrame(known).set_index("t")
 
-    def plot(self, curves: Sequence[str] | None = None) -> "Picture":
+    def plot(self, curves: Sequence[str] | str | None = None) -> "Picture":
         """Return the motion as a picture, for a notebook or a file.
 
         Parameters
         ----------
-        curves : sequence of str or None
-            Names of quantities as in `keys`, or None for all but residuals and sensitivities.
+        curves : sequence of str, str or None
+            Names of quantities as in `keys`, or one name, or None for all but residuals and sensitivities.
 
         Returns
         -------
@@ -247,7 +249,7 @@ class Simulation(Sampled, Shown):
         from ..figures.motion import motion_figure
         from ..figures.style import Picture
 
-        return Picture(motion_figure(self, curves))
+        return Picture(motion_figure(self, [curves] if isinstance(curves, str) else curves))
 
     def film(self) -> "MovingPicture":
         """Return the motion as a film, for a notebook or a file.

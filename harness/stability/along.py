@@ -73,7 +73,7 @@ PERTURBED = 1e-7  # relative error of Phi against which characteristic multiplie
 
 
 @with_attributes
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Floquet:
     """Characteristic multipliers of a periodic motion."""
 
@@ -94,7 +94,7 @@ class Floquet:
 
 
 @with_attributes
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FreeDeviations:
     """Small deviations from a free motion, to first order."""
 
@@ -124,7 +124,7 @@ def _shared(name: str, text: str) -> property:
 
 
 @with_attributes
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class LinearizedMotion(Documented, Shown):
     """A linear system along a motion.
 

@@ -79,7 +79,7 @@ class Stability(StrEnum):
 
 
 @with_attributes
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equilibrium:
     """A state at rest, with the linear system there."""
 
@@ -103,7 +103,7 @@ class Equilibrium:
 
 
 @with_attributes
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)
 class Equilibria(Documented, Shown):
     """Equilibria that were found: all of them if `complete` is True.
 
@@ -446,11 +446,13 @@ class _Search:
     def _stiffness(self, q: Vector, multipliers: Vector) -> tuple[Matrix, float, float] | None:
         """Return the change of the forces along the manifold, its bound and its error.
 
-        Its shape is (m, m). None in a singular configuration.
+        Its shape is (m, m). None in a singular configuration, or where the forces or their changes have no value.
 
         For forces with a potential it is the second variation.
         """
         here = self._at(q, multipliers)
+        if not all(np.isfinite(here[name]).all() for name in ("equation", "equation_by_q")):
+            return None
         try:
             tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
         except HolonomError:

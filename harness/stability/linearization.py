@@ -74,7 +74,7 @@ def by_rates(matrix: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 @with_attributes
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, repr=False, eq=False)  # arrays have no one answer to ==
 class Linearization(Documented, Shown):
     """A linear system x' = A x + B_u du + B_du du' + B_ddu du''.
 
@@ -188,15 +188,15 @@ class Linearization(Documented, Shown):
     def _observable_rank(self) -> int | None:
         return self.observable_rank()
 
-    def observable_rank(self, outputs: Sequence[str] | None = None) -> int | None:
+    def observable_rank(self, outputs: Sequence[str] | str | None = None) -> int | None:
         """Kalman's rank of observability, at most 2m.
 
         None if rounding does not determine it.
 
         Parameters
         ----------
-        outputs : sequence of str or None
-            Names of outputs, or None for all.
+        outputs : sequence of str, str or None
+            Names of outputs, or one name, or None for all.
 
         Returns
         -------
@@ -228,7 +228,7 @@ class Linearization(Documented, Shown):
         """
         return self.C[self._rows([output])[0]]
 
-    def state_space(self, input: str = "u", outputs: Sequence[str] | None = None) -> tuple[Matrix, ...]:
+    def state_space(self, input: str = "u", outputs: Sequence[str] | str | None = None) -> tuple[Matrix, ...]:
         """Return A, B, C, D as `scipy.signal.StateSpace` and python-control take them.
 
         Parameters
@@ -236,8 +236,8 @@ class Linearization(Documented, Shown):
         input : str
             ``u``: the controls' deviations, if their time derivatives do not enter. ``ddot``: the controls'
             accelerations. Then u and du/dt are states, after xi and eta.
-        outputs : sequence of str or None
-            None for all.
+        outputs : sequence of str, str or None
+            Names of outputs, or one name, or None for all.
 
         Returns
         -------
@@ -286,8 +286,8 @@ class Linearization(Documented, Shown):
 
         return Picture(modes_figure(self))
 
-    def _rows(self, outputs: Sequence[str] | None) -> list[int]:
-        wanted = self.outputs if outputs is None else outputs
+    def _rows(self, outputs: Sequence[str] | str | None) -> list[int]:
+        wanted = self.outputs if outputs is None else [outputs] if isinstance(outputs, str) else outputs
         if unknown := [name for name in wanted if name not in self.outputs]:
             raise ValueError(f"unknown output {unknown[0]!r}: expected {', '.join(self.outputs)}")
         return [self.outputs.index(name) for name in wanted]
@@ -655,10 +655,17 @@ def _reachable(A: Matrix, B: Matrix) -> int | None:
 
     None if rounding does not determine it.
     """
-    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    balanced, scale = _balanced(A)
     A, B = balanced / or_one(np.linalg.norm(balanced)), B / scale[:, None]
     fewest, most = (_dimension(A, B / or_one(np.linalg.norm(B, axis=0)), least) for least in UNREACHED)
     return fewest if fewest == most else None
+
+
+def _balanced(A: Matrix) -> tuple[Matrix, Vector]:
+    """Return D^-1 A D with rows as long as columns, and the diagonal of D."""
+    with np.errstate(invalid="ignore"):  # SciPy casts large factors to integers that it does not use
+        balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    return balanced, scale
 
 
 def _dimension(A: Matrix, B: Matrix, least: float) -> int:
@@ -692,7 +699,7 @@ def perturbed_eigenvalues(A: Matrix, error: float, entries: Matrix | float = 0.0
     """
     if not A.size:
         return np.empty(0), np.empty(0), np.empty(0)
-    balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    balanced, scale = _balanced(A)
     values, left, right = scipy.linalg.eig(balanced, left=True, right=True)
     with np.errstate(divide="ignore"):
         conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))

@@ -86,8 +86,11 @@ class RealSolutions:
         if not self._standard:
             return []
         mixed = sum((unknown * prime for unknown, prime in zip(ring.gens, MIXED, strict=False)), ring.zero)
-        columns = np.linalg.eig(self._multiplication(mixed))[1].T
-        unknowns = np.array([[float(c) for c in self._coefficients(x)] for x in ring.gens])
+        try:
+            columns = np.linalg.eig(self._multiplication(mixed))[1].T
+            unknowns = np.array([[float(c) for c in self._coefficients(x)] for x in ring.gens])
+        except OverflowError:  # coefficients beyond double precision
+            return []
         one = np.array([float(c) for c in self._coefficients(ring.one)])
         with np.errstate(all="ignore"):
             values = [unknowns @ each / (one @ each) for each in columns]

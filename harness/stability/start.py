@@ -25,6 +25,11 @@ class StartedSource(Source):
         super().__init__(source.file, source.limits)
         self._source, self._scene, self._state = source, scene, state
 
+    @property
+    def text(self) -> str:
+        """Text of the file."""
+        return self._source.text
+
     def description(self, settings: Mapping[str, str] = NO_SETTINGS) -> Description:
         """Return the description of the file under settings, with this initial state.
 

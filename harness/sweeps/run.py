@@ -146,7 +146,7 @@ def run_sweep(
     _require_parameters(problem, wanted.axes)
     plan = Plan(problem, wanted.axes, wanted.outputs, wanted.tol, wanted.until, wanted.stabilization)
     maker = RowMaker(plan)  # rejects what cannot be computed before there is a folder
-    target = SweepFolder(folder, _document(source.file, request, wanted, text, maker))
+    target = SweepFolder(folder, _document(source, request, wanted, text, maker))
     with target.locked(wanted.resume):
         absent, altered = target.missing()
         chunks = sorted([*absent, *altered], key=lambda chunk: chunk.index)
@@ -191,11 +191,11 @@ def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
         )
 
 
-def _document(file: Path, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> SweepDocument:
-    text, problem, axes = file.read_text(encoding="utf-8"), maker.plan.problem, wanted.axes
+def _document(source: Source, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> SweepDocument:
+    text, problem, axes = source.text, maker.plan.problem, wanted.axes
     return SweepDocument(
         SweptScene(
-            file=wanted.called or str(file),
+            file=wanted.called or str(source.file),
             name=problem.scene,
             title=problem.title,
             system=problem.system.title,

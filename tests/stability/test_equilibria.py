@@ -413,6 +413,40 @@ def test_a_drag_without_a_derivative_at_rest_ended_in_an_internal_error():
     assert refused.value.kind is ErrorKind.NO_DERIVATIVES
 
 
+def test_forces_without_a_value_at_zero_ended_in_an_internal_error():
+    found = of_particle("forces = [-x*log(x^2)]", "x").equilibria()
+    assert [(each.coordinates["x"], str(each.stability)) for each in found] == [(-1, "stable"), (1, "stable")]
+    assert not found.complete
+
+
+@pytest.fixture(scope="module")
+def hanging() -> holonom.Scene:
+    return holonom.system(
+        "system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, "
+        "potential_energy = y, constraints = [x^2 + y^2 - u^2])$\n"
+        "s : holonomic_scene(system, control_law = [u = 1], initial_state = [x = 1, y = 0, dot(x) = 0, dot(y) = 0])$"
+    )
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), None, True, [1], "x"])
+def test_a_control_that_is_no_number_ended_in_an_internal_error(value, hanging):
+    for equilibria in (lambda: hanging.equilibria(u=value), lambda: hanging.branches("u", [value])):
+        with pytest.raises(HolonomError) as refused:
+            equilibria()
+        assert refused.value.kind is ErrorKind.NOT_A_SETTING
+
+
+def test_a_text_is_not_a_sequence_of_digits(hanging):
+    with pytest.raises(HolonomError) as refused:
+        hanging.branches("u", "12")
+    assert refused.value.kind is ErrorKind.NOT_A_SETTING
+
+
+def test_a_control_may_be_a_quotient_or_large(hanging):
+    assert [each.coordinates["y"] for each in hanging.equilibria(u="1/3")] == pytest.approx([-1 / 3, 1 / 3])
+    assert hanging.equilibria(u=1e300).count == 2
+
+
 PLANE = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   potential_energy = {}, constraints = [{}])$
 s : holonomic_scene(system, initial_state = [{}], initial_guess = [{}])$"""

@@ -271,6 +271,12 @@ def test_small_deviations_of_a_motion_follow_the_linear_system(name):
     assert here.A @ state(0) + sum(here.B[rate] @ law[rate] for rate in law) == pytest.approx(rates, rel=1e-6, abs=1e-6)
 
 
+def test_one_output_is_given_by_its_name():
+    linear = holonom.load("examples/pendulum.mac").linearize()
+    assert linear.state_space("ddot", "dot(x)")[2].shape == (1, 4)
+    assert linear.observable_rank("dot(x)") == linear.observable_rank(["dot(x)"])
+
+
 def test_state_space_with_accelerations_as_inputs():
     found = holonom.system(PARTS["pendulum"]).with_settings(e=0).linearize(TIME)
     a, b, c, d = found.state_space("ddot", ["x", "lambda1"])
