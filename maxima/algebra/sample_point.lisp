@@ -20,6 +20,7 @@
 (defvar *impatience* 40 "Corrections after which each must be smaller than the one before.")
 (defvar *smallest-coordinate* (expt 10 -70))
 (defvar *functions-with-zeros* '(%sin %cos %tan %cot %log) "With slope 1 or -1 at their zeros, but for signs and 1/x.")
+(defvar *runaway* (expt 10 30) "Of the initial point and its correction: a correction that large is a divergence.")
 (defvar *least-gain* 1000 "By how much a correction in floating point must lessen the residuals.")
 (defvar *most-refinements* 20)
 (defvar *most-halvings* 40 "Of a correction, in a line search.")
@@ -221,13 +222,14 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 ;; In floating point a residual whose terms all vanish, as y where y = 0, may stay: a caller with a point that no
 ;; correction changes any more continues from there with more digits.
 (defun newton-iteration (point &optional damped)
-  (let ((last-size nil))
+  (let ((last-size nil) (bound nil))
     (dotimes (attempt *most-corrections* nil)
       (let ((residuals (residuals-at point)))
         (if (all-of-p #'zerop residuals) (return (copied-point point)))
         (let* ((corrections (corrections-of residuals point)) (size (largest-correction corrections)))
           (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point)))) (return point))
-          (if (and (> attempt *impatience*) last-size (>= size last-size)) (return nil))
+          (if (null bound) (setq bound (* *runaway* (max size (largest-coordinate point)))))
+          (if (or (> size bound) (and (> attempt *impatience*) last-size (>= size last-size))) (return nil))
           (setq last-size size
                 point (if damped
                           (point-of-line-search point corrections size)
