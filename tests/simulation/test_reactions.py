@@ -290,3 +290,18 @@ run : holonomic_scene(system, parameter_values = [J1 = 1, J2 = 9, T = 10], initi
     assert motion["a"] == pytest.approx([0, 0.25, 1])
     assert motion["A[1]"] == pytest.approx([-8] * 3)
     assert motion["B[1]"] == pytest.approx([-12] * 3)
+
+
+def test_rack_on_the_centre_of_its_own_wheel_is_the_friction_of_rolling():
+    """A disc of m = 2 and I = 1 with r = 1 is pulled by 3: (m + I/r^2) a = 3, and the ground brakes it by I a."""
+    scene = holonom.system("""
+disc  : planar_body(2, 1, [x, y], phi)$
+grip  : rack(disc, marker(ground, [0, 1], [1, 0]), -1, disc)$
+system : holonomic_system(assembly(disc, point_on_line(disc, marker(ground, [0, 1], [1, 0])), grip,
+  applied_force([3, 0], disc)))$
+roll : holonomic_scene(system, initial_state = [x = 0, y = 1, phi = 0, dot(phi) = 0], time_span = [0, 1],
+  observe = [trajectory, G = reaction(grip)])$
+""")
+    motion = scene.simulate(samples=2)
+    assert motion["x"] == pytest.approx([0, 1 / 2])
+    assert rows(motion, "G", 3)[:, -1] == pytest.approx([-1, 0, -1])
