@@ -14,11 +14,11 @@ from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
 from ..language import gettext
-from ..number_texts import number
+from ..number_texts import number, numbers
 from ..sandbox import Limits
 from ..series.compute import compute_series
 from ..series.power_series import MotionSeries
-from ..series.radius import Radius
+from ..series.radius import Radius, estimate_radius
 from ..series.request import SeriesRequest
 from . import INITIAL_SCENE, PAPER
 
@@ -28,7 +28,7 @@ AT_ONCE = 2  # runs of Maxima
 
 
 def find_radii(controls: Sequence[Fraction] = CONTROLS) -> dict[float, Radius]:
-    """Estimate the radii of the paper's second task under other initial controls.
+    """Estimate radii of the paper's second task under other initial controls.
 
     Parameters
     ----------
@@ -42,8 +42,23 @@ def find_radii(controls: Sequence[Fraction] = CONTROLS) -> dict[float, Radius]:
     """
     requests = [SeriesRequest(ORDER, INITIAL_SCENE, settings={"u0": str(u0)}) for u0 in controls]
     with ThreadPoolExecutor(AT_ONCE) as pool:
-        found = pool.map(lambda request: compute_series(PAPER, request, Limits()).radius, requests)
-        return dict(zip(map(float, controls), found, strict=True))
+        found = pool.map(lambda request: compute_series(PAPER, request, Limits()), requests)
+        return dict(zip(map(float, controls), map(radius_by_coefficients, found), strict=True))
+
+
+def radius_by_coefficients(series: MotionSeries) -> Radius:
+    """Estimate the radius of convergence without the equations of motion.
+
+    Parameters
+    ----------
+    series : MotionSeries
+        Power series of a motion.
+
+    Returns
+    -------
+    Radius
+    """
+    return estimate_radius([numbers(row) for row in series.coordinates.values()])
 
 
 def partial_sums(

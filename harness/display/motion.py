@@ -45,7 +45,9 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
         derivatives = {name: row for name, row in motion.sensitivities.items() if _direction(name) == direction}
         _show_coefficients(console, f"Derivatives by {visible_line(direction)}", derivatives)
     radius = motion.radius
-    size = "" if radius.estimate is None else f"{radius.shown}, {described(radius)}; "
+    size = "" if radius.estimate is None else f"{radius.shown}, "
+    if radius.estimate is not None and not radius.located:  # the note of one that is located is its evidence
+        size += f"{described(radius)}; "
     console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.note}", soft_wrap=True)
     if motion.switch is not None:
         console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True)

@@ -112,7 +112,8 @@ STATEMENTS = [
     Statement(
         "radius-of-convergence",
         "The estimate from",
-        lambda found: abs(found["series"].radius.estimate - 0.76811457) < 1e-6,
+        lambda found: abs(found["alone"].estimate - 0.76811457) < found["alone"].uncertainty
+        and not found["alone"].located,
     ),
     Statement(
         "universal-controls",
