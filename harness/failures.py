@@ -80,7 +80,10 @@ class ErrorKind(Enum):
         "Maxima asks a question that a batch run cannot answer: {detail}",
         "add an assumption to the scene file, for example assume(m > 0)",
     )
-    SYNTAX = "Maxima cannot read this: {detail}"
+    SYNTAX = (
+        "Maxima cannot read this: {detail}",
+        "end each statement with $, close brackets and quotes, and write commas between entries and * between factors",
+    )
     LISP_ERROR = "Maxima ended with a Lisp error: {detail}"
     ENDED_EARLY = ("Maxima ended before the file did", "remove the statement that ends it, for example quit()")
     NOTHING_WRITTEN = (

@@ -360,6 +360,8 @@ def test_a_long_condition_is_printed_by_its_terms_with_its_roots_under_names():
     distance = ["Add", ["Power", "x", 2], ["Power", "y", 2]]
     short = ["Multiply", "x", ["Power", distance, ["Rational", -1, 2]]]
     assert condition_lines(short) == ["x/sqrt(x^2 + y^2) = 0"]
+    one = condition_lines(["Divide", ["Add", *[["Power", "x", k] for k in range(2, 40)]], 2])
+    assert (len(one), one[0][-5:]) == (1, "2 = 0")
     terms = [["Multiply", k, "r1", ["Power", distance, ["Rational", k, 2]], ["Sqrt", 3]] for k in (-1, 3, 5, 7, 9)]
     assert condition_lines(["Add", *terms, ["Power", "x", ["Rational", 1, 3]]]) == [
         "with rr1 = sqrt(x^2 + y^2)",

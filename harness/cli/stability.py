@@ -122,7 +122,7 @@ def equilibria(
     from ..formats import Publication, published
     from ..program.request import read_settings
     from ..simulation.output import require_formats
-    from ..sweeps.axes import read_axes
+    from ..sweeps.axes import Axes, read_grids
 
     if plot_file is not None and over is None:
         raise click.UsageError("--plot draws what --over asks for")
@@ -133,7 +133,7 @@ def equilibria(
         found = scene.equilibria(**options, **values)
         present(published(Publication.EQUILIBRIA, found), json_file, show_equilibria, found)
         return 0
-    axes = read_axes([over], [], [], None, None)
+    axes = Axes(tuple(read_grids("--over", [over])), (), 1, 0)
     branches = scene.branches(axes.names[0], axes.numbers(0, axes.rows)[0].tolist(), **options, **values)
     if plot_file is not None:
         branches.plot().save(plot_file)

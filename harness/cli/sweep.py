@@ -18,7 +18,7 @@ from .outputs import OutputFile, as_given
 @holonom.command(
     examples=[
         "sweep examples/crane.mac --grid m=50:500:300 -o runs",
-        'sweep examples/crane.mac --list m=1,2 --keep "max(lambda1)" -o runs',
+        'sweep examples/crane.mac --list m=1,2 --keep "max(lambda1)" -o two',
     ]
 )
 @asks_one_scene(*options_of(Request, "solve"))

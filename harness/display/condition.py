@@ -35,10 +35,10 @@ def condition_lines(left: Tree) -> list[str]:
     roots: Roots = {}
     named = converted(left, partial(_with_named_roots, roots, _prefix(left)))
     terms = named[1:] if isinstance(named, list) and named[0] == "Add" else [named]
+    written = [scene_text(term) for term in terms]
     return [
         *(f"with {name} = {scene_text(root)}" for name, root in roots.values()),
-        "0 = the sum of",
-        *(f"    {scene_text(term)}" for term in terms),
+        *(["0 = the sum of", *(f"    {term}" for term in written)] if len(written) > 1 else [f"{written[0]} = 0"]),
     ]
 
 

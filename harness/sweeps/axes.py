@@ -25,7 +25,7 @@ from ..options import Number, within_reach
 BLOCK = 1024  # members of a sample that one generator draws
 MOST_ROWS = 10**12
 NUMBER = r"[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?:/\d+)?"
-EXAMPLES = {"--grid": "m=50:500:1000", "--list": "m=1,2,5", "--sample": "'m=normal(100,5)'"}
+EXAMPLES = {"--grid": "m=50:500:1000", "--over": "u=1:3:5", "--list": "m=1,2,5", "--sample": "'m=normal(100,5)'"}
 ARGUMENTS = {"grid": "{'m': (50, 500, 1000)}", "values": "{'m': [1, 2, 5]}", "sample": "{'m': 'normal(100,5)'}"}
 Axis = TypeVar("Axis")
 DRAWN = re.compile(rf"(\w+)\(\s*({NUMBER})\s*,\s*({NUMBER})\s*\)")
@@ -169,8 +169,30 @@ def read_axes(
         One of them is not of its form, a parameter is varied twice or none is, there are too many rows, or size or seed
         is not such a number.
     """
-    values = [*_read("--grid", _grid, grids), *_read("--list", _listed, lists)]
+    values = [*read_grids("--grid", grids), *_read("--list", _listed, lists)]
     return _axes(values, [*_read("--sample", _sample, samples)], size, seed)
+
+
+def read_grids(option: str, texts: Iterable[str]) -> Iterator[Grid]:
+    """Read equidistant numbers from an option of a command line.
+
+    Parameters
+    ----------
+    option : str
+        Name of the option.
+    texts : iterable of str
+        ``NAME=FIRST:LAST:COUNT``.
+
+    Yields
+    ------
+    Grid
+
+    Raises
+    ------
+    HolonomError
+        One of them is not of its form.
+    """
+    return _read(option, _grid, texts)
 
 
 def _read(option: str, read: Callable[[str], Axis], texts: Iterable[str]) -> Iterator[Axis]:

@@ -226,7 +226,7 @@ class SweepFolder:
                 raise HolonomError(
                     ErrorKind.OTHER_SWEEP,
                     self.path,
-                    translatable("its %(name)s is %(value)s", name=name, value=_shown(there.get(name))),
+                    translatable("%(name)s is %(value)s there", name=name, value=_shown(there.get(name))),
                 )
 
 

@@ -30,10 +30,15 @@
 
 (defun $described_tables (tables) (setq *tables-described* (cdr tables)) tables)
 
+(defvar *often-mistyped* '((mlist) $dot $ddot %sin %cos %tan $exp %log $sqrt mabs %signum)
+  "Functions that an unknown one may be meant for.")
+
 (defun $json_described (entry e)
   "An expression. One that no document can hold is an error where the entry is known."
   (let ((unknown (unknown-operator e)))
-    (if unknown ($refuse '$function_not_described entry unknown) (list '($json_expression) e))))
+    (if unknown
+        ($refuse '$function_not_described entry unknown (mfuncall '$did_you_mean unknown *often-mistyped*))
+        (list '($json_expression) e))))
 
 (defun $json_described_list (entry expressions)
   (cons '($json_array) (mapcar #'(lambda (e) ($json_described entry e)) (cdr expressions))))

@@ -5,7 +5,7 @@ import pytest
 from refusing import failing
 
 from holonom.failures import ErrorKind
-from holonom.sweeps.axes import axes_of, read_axes
+from holonom.sweeps.axes import axes_of, read_axes, read_grids
 
 
 def test_the_last_parameter_varies_fastest():
@@ -52,6 +52,12 @@ def test_a_malformed_axis_raises_with_its_option(grids, lists, samples, size):
     with failing(ErrorKind.MALFORMED_AXIS) as raised:
         read_axes(grids, lists, samples, size, None)
     assert raised.value.option == ("--grid" if grids else "--list" if lists else "--sample")
+
+
+def test_a_malformed_range_names_the_option_that_it_is_of():
+    with failing(ErrorKind.MALFORMED_AXIS) as raised:
+        list(read_grids("--over", ["u=1"]))
+    assert raised.value.option == "--over"
 
 
 @pytest.mark.parametrize(
