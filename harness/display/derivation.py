@@ -12,6 +12,7 @@ from rich.terminal_theme import DIMMED_MONOKAI
 from rich.text import Text
 
 from ..expression.notation import scene_text
+from ..expression.trees import with_decimals
 from ..hidden import visible_line
 from ..language import gettext, ngettext, translatable, translated
 from ..record import LARGEST_SIZE
@@ -131,7 +132,7 @@ def _title(number: str, name: str) -> str:
 
 
 def _line(relation: "Relation") -> str:
-    return f"    {scene_text(relation.left_tree)} = {scene_text(relation.right_tree)}"
+    return f"    {scene_text(relation.left_tree)} = {scene_text(with_decimals(relation.right_tree))}"
 
 
 def _show_left_out(console: Console, left_out: "LeftOut | None") -> None:

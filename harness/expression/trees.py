@@ -16,6 +16,7 @@ recursion limit. (`json.loads` itself is limited to about a thousand levels.)
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from decimal import Context
 from typing import Any
 
 from ..failures import ErrorKind, HolonomError
@@ -24,6 +25,8 @@ from .functions import CONSTANTS
 Tree = int | str | dict | list
 
 JSON_INTEGERS = 2**53  # integers below it are JSON numbers that every reader reads exactly
+UNREADABLE = 10**30  # integers in a fraction that are not shown
+ROUNDING = Context(prec=12)  # of the decimal that is shown instead
 SHOWN = 60  # characters of a rejected fragment that the error shows
 
 INTEGER = re.compile(r"-?\d{1,4300}")  # Python's own limit on decimal digits
@@ -69,6 +72,42 @@ def converted(root: Any, expand: Callable[[Any], tuple[Callable[..., Any], list]
             waiting.append(_Application(build, len(arguments)))
             waiting.extend(reversed(arguments))
     return found.pop()
+
+
+def with_decimals(tree: Tree) -> Tree:
+    """Write fractions that are too long to read as decimals.
+
+    Parameters
+    ----------
+    tree : Tree
+        An expression to be shown.
+
+    Returns
+    -------
+    Tree
+        The expression with rounded numbers in place of those fractions.
+    """
+    return converted(tree, _with_decimals)
+
+
+def _with_decimals(tree: Tree) -> tuple[Callable[..., Tree], list[Tree]]:
+    match tree:
+        case ["Rational" | "Divide", over, under] if None not in (parts := (_value(over), _value(under))):
+            if max(map(abs, parts)) >= UNREADABLE:
+                tree = {"num": str(ROUNDING.divide(*parts))}
+        case [str(head), *arguments]:
+            return lambda *shown: [head, *shown], arguments
+    return lambda: tree, []
+
+
+def _value(tree: Tree) -> int | None:
+    """Return an integer of any size, None for another tree."""
+    match tree:
+        case {"num": str(digits)} if INTEGER.fullmatch(digits):
+            return int(digits)
+        case int():
+            return tree
+    return None
 
 
 def integer(tree: object) -> int:

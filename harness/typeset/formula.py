@@ -21,7 +21,7 @@ from math import inf
 from typing import NamedTuple
 
 from ..expression.functions import CONSTANTS, FUNCTIONS
-from ..expression.mathjson import Tree
+from ..expression.trees import Tree, with_decimals
 from ..failures import ErrorKind, HolonomError
 from .boxes import (
     CLOSING,
@@ -119,7 +119,7 @@ def formula_lines(tree: Tree, room: float) -> list[Box]:
         One box for each line.
     """
     rows: list[Box] = []
-    for box, leading, between in _parts(tree, room):
+    for box, leading, between in _parts(with_decimals(tree), room):
         if rows and rows[-1].width + between.width + box.width <= room:
             rows[-1] = beside(rows[-1], between, box)
         else:
