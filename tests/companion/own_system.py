@@ -26,7 +26,7 @@ SMOOTH = (
 """
 )
 ROUGH = (
-    OWN
+    OWN.replace("[y - u*x]", "[y - u*x, 2*y - 2*u*x]")
     + """rough_scene : holonomic_scene(system, title = "Rough",
   control_law = [u = 1 + t^(7/2)], parameter_values = [k = 2], initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$
 """

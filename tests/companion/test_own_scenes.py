@@ -44,7 +44,12 @@ def test_signs_of_markup_in_a_title_are_text(own):
 
 def test_free_motion_and_series_are_answered(own):
     assert "Every motion is free" in pages.words(own / "6-weightless-cabin-free-motion.html")
-    assert "The series converges for" in pages.words(own / "1-my-system-initial-motion.html")
+    assert "Radius of convergence: " in pages.words(own / "1-my-system-initial-motion.html")
+
+
+def test_constraints_that_follow_from_others_take_no_freedom(own):
+    counts = re.search(r"<p>(\d+ [^<]*)</p>", (own / "2-rough-the-system.html").read_text(encoding="utf-8"))[1]
+    assert re.findall(r"\d+", counts) == ["2", "1", "2", "1"]  # coordinates, controls, constraints, freedom
 
 
 def test_numbers_come_before_closed_forms(own):
