@@ -83,6 +83,7 @@ def test_a_description_holds_what_its_file_says(switched):
     (run,) = switched.scenes
     assert switched.closed_form_size == 77
     assert switched.system.title == 'Switched "on" \\ off'
+    assert run.title == "run"  # it has none of its own
     assert switched.content["assumptions"] == [["Greater", "m", 0]]
     assert switched.content["declarations"] == [["n", "integer"]]
     assert [effect.effect for effect in switched.system.potential_energy] == ["stop", "weight"]

@@ -2,8 +2,6 @@
 
 from ..hidden import visible_line
 
-UNTITLED = "Untitled scene"  # title of a scene without one
-
 
 def heading(scene: str, title: str) -> str:
     """Return the heading of a scene: its name, and its title if it has one.
@@ -18,4 +16,4 @@ def heading(scene: str, title: str) -> str:
     str
         One line without control characters.
     """
-    return visible_line(scene if title == UNTITLED else f"{scene}: {title}")
+    return visible_line(scene if title == scene else f"{scene}: {title}")

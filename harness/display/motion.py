@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..hidden import visible_line
 from .heading import heading
+from .text import counted
 
 if TYPE_CHECKING:
     import mpmath
@@ -172,7 +173,7 @@ def _quality(report: "Report") -> Iterator[str]:
     left = ", ".join(f"{name} {value:.1e}" for name, value in report.residuals.items())
     yield f"residuals of the constraints: {left}; condition number of G: {report.condition:.3g}"
     yield f"energy error: {report.energy_error:.1e}"
-    steps = f"{report.steps} steps by {engine_text(report.segments)}"
+    steps = f"{counted(report.steps, 'step')} by {engine_text(report.segments)}"
     yield f"{steps}, in {report.precision} precision at tolerance {report.tol:.1e}"
     if report.choice is not None:
         yield _choice(report.choice)
