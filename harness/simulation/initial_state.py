@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 from functools import cached_property
+from math import log10
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from numpy.typing import NDArray
 from ..described import Correction
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
+from ..options import LARGEST_EXPONENT
 from ..program.motion_problem import DependsOn, MotionProblem, Origin
 from ..program.rewriting import computing
 from ..program.sign_pattern import at_start, problem_in
@@ -242,7 +244,7 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
     ------
     HolonomError
         The initial state cannot be adapted to the parameters, or not to one that is known to be the only one. There is
-        none for these values.
+        none for these values. A value exceeds a double.
     """
     if Origin.CONTINUED in problem.initial.parametric.origins.values():
         reason = translatable(
@@ -250,6 +252,10 @@ def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionP
         )
         raise HolonomError(ErrorKind.NO_INITIAL_STATE, problem.scene, reason)
     complete = {name: values.get(name, problem.values.get(name)) for name in problem.parameters}
+    for name, value in complete.items():
+        above, below = value.as_integer_ratio()
+        if above and not abs(log10(abs(above)) - log10(below)) < LARGEST_EXPONENT:
+            raise HolonomError(ErrorKind.SETTING_TOO_LARGE, detail=name)
     numbers = np.array([[float(complete[name])] for name in problem.parameters])
     initial_states = InitialStates(problem)
     starts = initial_states(numbers)

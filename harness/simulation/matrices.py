@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..failures import ErrorKind, HolonomError
 from ..program.motion_problem import MotionProblem, require_signs_known
 from ..program.precision import read_precision
 from .evaluation import Numbers, batch_evaluation, evaluation_once
@@ -215,8 +216,16 @@ def start_of(problem: MotionProblem) -> tuple[float, Vector]:
     Returns
     -------
     (float, ndarray of shape (2n,))
+
+    Raises
+    ------
+    HolonomError
+        A number exceeds a double.
     """
-    return float(problem.start["t"]), np.array([float(problem.start[name]) for name in problem.state])
+    state = np.array([float(problem.start[name]) for name in problem.state])
+    if not np.isfinite(state).all():
+        raise HolonomError(ErrorKind.NUMBER_TOO_LARGE)
+    return float(problem.start["t"]), state
 
 
 def _place(output: str, starts: dict[str, int], n: int) -> int:

@@ -588,7 +588,7 @@ class _Search:
         matrix = np.block([[K, -np.swapaxes(J, 1, 2)], [J, np.zeros((k, g, g))]])
         matrix = weights[:, :, None] * matrix * scale[:, None, :]
         out_of_balance = weights * np.concatenate([here["equation"], here["constraint"]]).T
-        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(out_of_balance).all(axis=1)
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite([*out_of_balance.T, *unit.T]).all(axis=0)
         step = np.full((k, n + g), np.nan)
         inverse = np.linalg.pinv(matrix[finite], rcond=DEPENDENT)
         step[finite] = -np.einsum("kij,kj->ki", inverse, out_of_balance[finite])

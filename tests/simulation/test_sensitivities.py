@@ -6,6 +6,7 @@ from math import cosh, sinh, sqrt
 import numpy as np
 import pytest
 import sympy as sp
+from refusing import failing
 from scipy.integrate import quad, solve_ivp
 from scipy.special import beta
 
@@ -316,6 +317,13 @@ def test_refusals(scene, options):
     with pytest.raises(HolonomError) as refused:
         scene.simulate(**options)
     assert refused.value.kind is ErrorKind.NO_SENSITIVITY
+
+
+@pytest.mark.parametrize("stiffness", ["10^400", "10^(-400)"])
+def test_a_parameter_beyond_a_double_ended_in_an_internal_error(stiffness):
+    scene = holonom.system(SPRING.replace("k = 8", f"k = {stiffness}"))
+    with failing(ErrorKind.SETTING_TOO_LARGE):
+        scene.simulate(until=1, sensitivities="k")
 
 
 def test_no_numbers_are_refused():

@@ -583,6 +583,20 @@ motion : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span 
     assert scene.simulate(samples=2)["x"][-1] == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize(
+    ("stiffness", "velocity", "kind"),
+    [("10^160", "0", ErrorKind.NO_WAY_ON), ("1", "10^400", ErrorKind.NUMBER_TOO_LARGE)],
+)
+def test_numbers_beyond_a_double_ended_in_an_internal_error(stiffness, velocity, kind):
+    scene = holonom.system(
+        "system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, "
+        f"potential_energy = {stiffness}*x^2/2)$ "
+        f"scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = {velocity}])$"
+    )
+    with failing(kind):
+        scene.simulate(until=1, samples=2)
+
+
 @pytest.mark.parametrize("step", ["0", "-1", "inf", "nan"])
 def test_a_longest_step_is_positive_and_finite(step):
     with failing(ErrorKind.NOT_A_STEP, step):

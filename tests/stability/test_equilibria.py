@@ -436,6 +436,13 @@ def test_a_control_that_is_no_number_ended_in_an_internal_error(value, hanging):
         assert refused.value.kind is ErrorKind.NOT_A_SETTING
 
 
+@pytest.mark.parametrize(("k", "places"), [("10^150", [0]), ("10^160", []), ("10^(-200)", [0])])
+def test_forces_whose_squares_overflow_had_equilibria_everywhere(k, places):
+    found = of_particle(f"potential_energy = {k}*x^2/2", "x").equilibria()
+    assert [each.coordinates["x"] for each in found] == places
+    assert found.complete is bool(places)
+
+
 def test_a_text_is_not_a_sequence_of_digits(hanging):
     with pytest.raises(HolonomError) as refused:
         hanging.branches("u", "12")

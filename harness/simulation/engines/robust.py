@@ -219,7 +219,7 @@ class RobustEngine:
         scale = self.tol * (nominal.state + np.abs(state))
         slope = self._rates(t, state) * nominal.time
         value, speed = (float(np.sqrt(np.mean((each / scale) ** 2))) for each in (state, slope))
-        length = LEAST_FIRST if value < UNFELT or speed < UNFELT else FIRST * value / speed
+        length = FIRST * value / speed if value >= UNFELT and UNFELT <= speed < np.inf else LEAST_FIRST
         later = self._rates(t + length * nominal.time, state + length * slope) * nominal.time
         steepest = max(speed, float(np.sqrt(np.mean(((later - slope) / scale) ** 2))) / length)
         if steepest > 0 and np.isfinite(steepest):
