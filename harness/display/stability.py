@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 ROUNDING = 1e-9  # share of a size that is shown as zero
 SHOWN_COORDINATES = 8  # columns for which there is room
 MOVING = (
-    "The motion or its equations change from here: these eigenvalues are those of this time and of the coordinates xi, "
-    "delta q = basis . xi, whose basis may change, too. They do not determine stability."
+    "The state is not at rest, or the equations contain the time: the eigenvalues are those of this time and of the "
+    "coordinates xi, delta q = basis . xi, whose basis may change, too. They do not determine stability."
 )
 
 
