@@ -137,7 +137,8 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
 def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
     limits = limits or Limits()
     warn_unsandboxed(limits)
-    return Scene(file, scene, _settings(settings), limits)
+    source = Source(file.absolute(), limits)  # the working directory may change
+    return Scene(file, scene, _settings(settings), limits, source)
 
 
 @takes_options(
@@ -227,11 +228,13 @@ class Scene:
     <Scene 'examples/pendulum.mac'>
     """
 
-    def __init__(self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits) -> None:
+    def __init__(
+        self, file: Path, name: str | None, settings: Mapping[str, str], limits: Limits, source: Source | None = None
+    ) -> None:
         self.file, self._settings, self.limits = file, dict(settings), limits
         self._name = name
         self._directory: OwnDirectory | None = None
-        self._source = Source(file.absolute(), limits)  # which does not move with the working directory
+        self._source = source or Source(file, limits)
         self._derived = Derivations(self._source)
 
     @property
@@ -270,8 +273,9 @@ class Scene:
         >>> scene.with_settings(m=2).settings
         {'m': '2'}
         """
-        other = Scene(self.file, self._name, self.settings | _settings({**(settings or {}), **more}), self.limits)
-        other._directory, other._source, other._derived = self._directory, self._source, self._derived
+        chosen = self._settings | _settings({**(settings or {}), **more})
+        other = Scene(self.file, self._name, chosen, self.limits, self._source)
+        other._directory, other._derived = self._directory, self._derived
         return other
 
     # ---- the derivation ----
@@ -564,7 +568,6 @@ class Scene:
 
         return linearize_along(*self._linear_problem(), AlongRequest(**options))
 
-    @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def equilibria(self, options: dict[str, Any], **controls: Number) -> "Equilibria":
         """Search for states at rest for constant controls.
@@ -576,7 +579,8 @@ class Scene:
         ----------
         {options}
         **controls : number
-            Values of controls. Default: the initial values of their laws.
+            Values of controls. Default: the initial values of their laws. Use `branches` for a control with the name
+            of an argument.
 
         Returns
         -------
@@ -593,6 +597,11 @@ class Scene:
         >>> len(scene.equilibria())
         2
         """
+        return self._equilibria(controls, **options)
+
+    @naming_the_extra()
+    def _equilibria(self, controls: Mapping[str, Number], **options: int) -> "Equilibria":
+        """Search for equilibria with controls of any names."""
         from .stability.equilibria import find_equilibria
 
         return find_equilibria(*self._linear_problem(), _numbers(controls), **options)
@@ -623,12 +632,11 @@ class Scene:
         """
         from .stability.start import started_at_equilibrium
 
-        other = self.with_settings()
-        other._source = started_at_equilibrium(self._source, self.equilibria(), name)
-        other._derived = Derivations(other._source)
+        source = started_at_equilibrium(self._source, self.equilibria(), name)
+        other = Scene(self.file, self._name, self._settings, self.limits, source)
+        other._directory = self._directory
         return other
 
-    @naming_the_extra()
     @takes_options(*options_of(EquilibriaRequest))
     def branches(
         self, control: str, values: Sequence[Number], options: dict[str, Any], **controls: Number
@@ -662,6 +670,13 @@ class Scene:
         >>> scene.branches("u", [1.0]).to_pandas().shape
         (2, 5)
         """
+        return self._branches(control, values, controls, **options)
+
+    @naming_the_extra()
+    def _branches(
+        self, control: str, values: Sequence[Number], controls: Mapping[str, Number], **options: int
+    ) -> "Branches":
+        """Search for equilibria over a control, with controls of any names."""
         from .stability.branches import find_branches
 
         if isinstance(values, str):

@@ -130,11 +130,11 @@ def equilibria(
     values = {name: Fraction(text) for name, text in read_settings(controls).items()}
     scene = _described(scene_file, request, limits)
     if over is None:
-        found = scene.equilibria(**options, **values)
+        found = scene._equilibria(values, **options)
         present(published(Publication.EQUILIBRIA, found), json_file, show_equilibria, found)
         return 0
     axes = Axes(tuple(read_grids("--over", [over])), (), 1, 0)
-    branches = scene.branches(axes.names[0], axes.numbers(0, axes.rows)[0].tolist(), **options, **values)
+    branches = scene._branches(axes.names[0], axes.numbers(0, axes.rows)[0].tolist(), values, **options)
     if plot_file is not None:
         branches.plot().save(plot_file)
     documents = [published(Publication.EQUILIBRIA, each) for each in branches]

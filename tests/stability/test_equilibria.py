@@ -176,6 +176,20 @@ def test_the_command(holonom_here):
     assert [each["stability"] for each in found["found"]] == ["stable", "unstable"]
 
 
+@pytest.mark.parametrize("over", [(), ("--over", "control=1:2:2")])
+def test_a_control_may_have_the_name_of_an_option(over, holonom_here, write_scene):
+    file = write_scene(
+        'load("holonom.mac")$\n'
+        "system : holonomic_system(coordinates = [x], controls = [seed, control], kinetic_energy = dot(x)^2/2, "
+        "potential_energy = (x - seed*control)^2/2)$\n"
+        "s : holonomic_scene(system, control_law = [seed = 1, control = 2], initial_state = [x = 1, dot(x) = 0])$"
+    )
+    answer = holonom_here("equilibria", str(file), "--control", "seed=4", *over, "--json", "-")
+    found = json.loads(answer.stdout)
+    last = found[-1] if over else found
+    assert (last["controls"], last["found"][0]["coordinates"]) == ({"seed": 4, "control": 2}, {"x": 8})
+
+
 # ---- all equilibria --------------------------------------------------------------------------------------------------
 
 
