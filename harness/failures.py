@@ -84,6 +84,7 @@ class ErrorKind(Enum):
         "Maxima cannot read this: {detail}",
         "end each statement with $, close brackets and quotes, and write commas between entries and * between factors",
     )
+    COMMENT_NOT_CLOSED = ("a comment is not closed", "write */ after it, once for each /* in it")
     LISP_ERROR = "Maxima ended with a Lisp error: {detail}"
     ENDED_EARLY = ("Maxima ended before the file did", "remove the statement that ends it, for example quit()")
     NOTHING_WRITTEN = (

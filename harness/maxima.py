@@ -292,12 +292,18 @@ def statement_ends(text: str, position: int = 0) -> Iterator[int]:
     ------
     int
     """
+    for match, _ in _tokens(text, position):
+        if match[0] in (";", "$"):
+            yield match.end()
+
+
+def _tokens(text: str, position: int = 0) -> Iterator[tuple[re.Match[str], int]]:
+    """Yield delimiters of Maxima text, each with the depth of comments after it."""
     depth = 0
     while match := (IN_COMMENT if depth else IN_CODE).search(text, position):
         position = match.end()
         depth += {"/*": 1, "*/": -1}.get(match[0], 0)
-        if match[0] in (";", "$"):
-            yield position
+        yield match, depth
 
 
 @contextmanager
@@ -319,6 +325,7 @@ def _copy(run: Run) -> str:
     """
     text = read_maxima_text(run.file)
     _require_short_names(text, run.file)
+    _require_closed_comments(text, run.file)
     (run.directory / "file.mac").write_bytes(text.encode())
     return '"file.mac"'
 
@@ -357,6 +364,18 @@ def _require_short_names(text: str, file: Path) -> None:
         if found["name"]:
             line = text.count("\n", 0, found.start()) + 1
             raise HolonomError(ErrorKind.NAME_TOO_LONG, f"{file}:{line}", found["name"][:SHOWN])
+
+
+def _require_closed_comments(text: str, file: Path) -> None:
+    """Raise for a comment without end: Maxima would skip the statements after it."""
+    begun, inside = 0, 0
+    for match, depth in _tokens(text):
+        if depth > inside == 0:
+            begun = match.start()
+        inside = depth
+    if inside:
+        line = text.count("\n", 0, begun) + 1
+        raise HolonomError(ErrorKind.COMMENT_NOT_CLOSED, f"{file}:{line}")
 
 
 def read_maxima_text(file: Path) -> str:

@@ -43,6 +43,7 @@ def test_a_scene_that_was_copied_away_from_beside_the_library_was_refused(write_
         ("y compare z$", 1, ErrorKind.SYNTAX, "compare is not an infix operator"),
         ("x : 1$\ny : (2", 2, ErrorKind.SYNTAX, "end of file"),
         ('x : 1$\ny : "unclosed', 2, ErrorKind.SYNTAX, "end of file"),
+        ("x : 1$\n/* a /* b */\ny : 2$ /* c */", 2, ErrorKind.COMMENT_NOT_CLOSED, ""),
         ("f(x) := 1 + f(x)$\nf(1)$", 2, ErrorKind.LISP_ERROR, "overflow"),
         ("?car(1, 2)$", 1, ErrorKind.LISP_ERROR, "arguments"),
         (r'?rat\-error("quotient is not exact")$', 1, ErrorKind.REFUSED, "quotient is not exact"),
