@@ -129,7 +129,7 @@ class Equilibria(Documented, Shown):
     )
     more: int = entry("Further solutions of the families of those that are not isolated.", minimum=0)
     singular: int = entry(
-        "Solutions in or near singular configurations, or where signs change, which are not classified.", minimum=0
+        "Starts that led to singular configurations, or where signs change, which are not classified.", minimum=0
     )
     turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
     reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")

@@ -536,6 +536,9 @@ def state_at(problem: MotionProblem, at: Fraction | None) -> tuple[float, Vector
     start = start_of(problem)
     if at is None or at == start[0]:
         return start
+    if at < start[0]:
+        begin = translatable("it begins at t = %(start)s", start=f"{start[0]:.10g}")
+        raise HolonomError(ErrorKind.NOT_REACHED, time=float(at), detail=begin)
     report = simulated(problem, SimulationRequest(until=at, samples=FINAL_STATE_ALONE)).report
     for each in report.switchings:
         if each.outcome is EventOutcome.JOINT_RELEASED:

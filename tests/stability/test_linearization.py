@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from problems import problem
+from refusing import failing
 from sympy.physics.mechanics import LagrangesMethod, Point, ReferenceFrame, dynamicsymbols
 
 import holonom
@@ -319,6 +320,11 @@ def test_hertz_contact_is_linearised_on_both_sides(contact, x, stiffness):
     text = f"""system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{contact}])$
         scene : holonomic_scene(system, initial_state = [x = {x}, dot(x) = 1], time_span = [0, 1])$"""
     assert holonom.system(text).linearize().A.ravel() == pytest.approx([0, 1, -stiffness, 0], abs=1e-12)
+
+
+def test_a_time_before_the_motion_is_not_the_end_of_one():
+    with failing(ErrorKind.NOT_REACHED, "-1", "0"):
+        holonom.load("examples/pendulum.mac").linearize(at=-1)
 
 
 def test_a_motion_that_ends_before_is_refused():
