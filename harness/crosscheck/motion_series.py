@@ -293,11 +293,15 @@ def _continued(
 
 
 def _slopes(motion: DescribedMotion, curve: Values, rows: Values, multipliers: list[Polynomial]) -> list[list[mp.mpf]]:
-    """Return the columns of 2 A and J at the initial time, one below the other."""
+    """Return the columns of 2 A and J at the initial time, one below the other.
+
+    The equations are linear in the accelerations. A step much smaller than these would be lost beside them.
+    """
     before = _residuals_at(motion, curve, multipliers, 0)
-    moved = ({name: (*row[:2], row[2] + 1)} for name, row in rows.items())
+    step = max(mp.one, *(abs(row[2]) for row in rows.values()))
+    moved = ({name: (*row[:2], row[2] + step)} for name, row in rows.items())
     after = (_residuals_at(motion, curve | each, multipliers, 0) for each in moved)
-    return [[x - y for x, y in zip(each, before, strict=True)] for each in after]
+    return [[(x - y) / step for x, y in zip(each, before, strict=True)] for each in after]
 
 
 def _residuals_at(motion: DescribedMotion, curve: Values, multipliers: list[Polynomial], k: int) -> list[mp.mpf]:

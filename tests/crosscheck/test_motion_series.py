@@ -127,3 +127,14 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span =
     coefficients = [0 if k % 2 else (-4) ** (k // 2) / math.factorial(k) for k in range(ORDER + 3)]
     assert [float(x) for x in known["x"]] == pytest.approx(coefficients, rel=1e-14)
     assert [float(x) for x in computed["ddot(x)"]] == pytest.approx([-4 * x for x in coefficients[:-2]], rel=1e-14)
+
+
+def test_series_of_large_accelerations_agree(tmp_path):
+    """One more than the initial acceleration, by which the next two powers were found, is the same in 60 digits."""
+    scene = tmp_path / "scene.mac"
+    scene.write_text("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = 10^240*x^2/2)$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$""")
+    source = Source(scene)
+    found = read_motions(source.description(), ask_for_check(source, {})).series
+    assert [each.found.verdict for each in verify_series(source.description(), found)] == [Verdict.AGREES]
