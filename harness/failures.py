@@ -1,5 +1,6 @@
 """Errors: every kind with its message and hints, and the package's one exception."""
 
+import os
 from collections.abc import Callable, Collection
 from enum import Enum
 from pathlib import Path
@@ -391,8 +392,12 @@ class HolonomError(Exception):
         self.facts = facts
 
     def __str__(self) -> str:
-        """Return the message with options spelt as arguments in Python."""
-        return self._message(argument)
+        """Return the message for Python: arguments for options, a path from here."""
+        try:
+            here = f"{Path.cwd()}{os.sep}"
+        except FileNotFoundError:
+            here = ""
+        return self._message(argument).removeprefix(here)
 
     def __getattr__(self, name: str) -> Any:
         if name in ALIASES:
