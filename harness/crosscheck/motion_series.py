@@ -295,7 +295,7 @@ def _continued(
 def _slopes(motion: DescribedMotion, curve: Values, rows: Values, multipliers: list[Polynomial]) -> list[list[mp.mpf]]:
     """Return the columns of 2 A and J at the initial time, one below the other.
 
-    The equations are linear in the accelerations. A step much smaller than these would be lost beside them.
+    The equations are linear in the accelerations. A step much smaller than these would be rounded away.
     """
     before = _residuals_at(motion, curve, multipliers, 0)
     step = max(mp.one, *(abs(row[2]) for row in rows.values()))
