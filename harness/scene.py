@@ -499,12 +499,15 @@ class Scene:
         if parameters:
             return self.with_settings(parameters).simulate(**options)
         from .program.precision import read_precision
+        from .simulation.output import BYTES_IN_ARRAYS, require_memory
         from .simulation.simulate import simulate
 
         solve = options.pop("solve")
         request = SimulationRequest(**options)
         digits = read_precision(str(request.precision)).digits
-        return simulate(self._derived.motion(self._request(solve), digits, request.sensitivities), request)
+        problem = self._derived.motion(self._request(solve), digits, request.sensitivities)
+        require_memory(problem, request.samples or 0, self.limits.memory_mib, BYTES_IN_ARRAYS)
+        return simulate(problem, request)
 
     @naming_the_extra()
     @takes_options(*options_of(LinearizationRequest))

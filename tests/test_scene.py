@@ -233,6 +233,11 @@ def test_a_single_sample_is_refused(released):
         released.simulate(samples=1)
 
 
+def test_more_samples_than_memory_are_refused_at_once(released):
+    with failing(ErrorKind.TOO_MANY_SAMPLES):
+        released.simulate(samples=10**10)
+
+
 def test_a_missing_file_is_refused_at_once():
     with failing(ErrorKind.FILE_MISSING):
         holonom.load("nowhere.mac")

@@ -30,6 +30,7 @@ from ..structs import written
 from .result import Report, Sampled, Simulation, SimulationDocument
 
 BYTES_OF_NUMBER = 250  # while samples are collected and written as text: measured for 300000 of six numbers each
+BYTES_IN_ARRAYS = 16  # of a double that is recorded in a block, and joined with others
 Columns = Mapping[str, NDArray[np.float64] | NDArray[np.str_]]
 Write = Callable[[Columns], None]
 FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with which a spreadsheet's formulas begin
@@ -63,7 +64,7 @@ def require_formats(samples: Path | None, figure: Path | None, film: Path | None
         film_format(film)
 
 
-def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> None:
+def require_memory(problem: MotionProblem, samples: int, memory_mib: int, of_number: int = BYTES_OF_NUMBER) -> None:
     """Reject more samples than the memory holds, before the integration.
 
     Parameters
@@ -74,6 +75,8 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
         Number of samples.
     memory_mib : int
         Available memory, in MiB.
+    of_number : int
+        Bytes that a number takes.
 
     Raises
     ------
@@ -81,9 +84,9 @@ def require_memory(problem: MotionProblem, samples: int, memory_mib: int) -> Non
         The samples need more memory. The message states the number that fits.
     """
     numbers = _numbers_a_sample(problem)
-    needed = samples * numbers * BYTES_OF_NUMBER / MIB
+    needed = samples * numbers * of_number / MIB
     if needed > memory_mib:
-        room = int(memory_mib * MIB / (numbers * BYTES_OF_NUMBER))
+        room = int(memory_mib * MIB / (numbers * of_number))
         estimate = translatable(
             "%(samples)s samples take about %(size)s MiB of memory, and there are %(free)s for %(room)s",
             samples=samples,
