@@ -126,6 +126,7 @@ class _StatesInPattern:
         self._evaluate = batch_evaluation(problem, start.program)
         self._matrices, self._redundant = BatchMatrices(problem), problem.dependent
         self._nominal = nominal_of(problem)
+        needed = np.isin(np.arange(len(problem.multipliers)), problem.independent)
         n = self._n
         present = {name for name in problem.matrices.outputs if name.startswith("J[")}
         touches = np.array(
@@ -134,7 +135,7 @@ class _StatesInPattern:
         self._origins = {name: start.origins[name] for name in problem.state}
         origins = list(self._origins.values())
         self._groups = [
-            _Group(half, np.array([origin is Origin.GIVEN for origin in part]), Origin.ONLY in part, touches)
+            _Group(half, np.array([origin is Origin.GIVEN for origin in part]), Origin.ONLY in part, touches, needed)
             for half, part in ((0, origins[:n]), (1, origins[n:]))
         ]
 
@@ -217,13 +218,17 @@ class _Group:
         Whether the others are the only solution of linear equations.
     touches : ndarray of bool, shape (g, n)
         Where J is not zero by structure.
+    needed : ndarray of bool, shape (g,)
+        False for redundant constraints: their gradients depend on the others at a root, but not at a guess.
     """
 
-    def __init__(self, half: int, given: NDArray[np.bool_], only: bool, touches: NDArray[np.bool_]) -> None:
+    def __init__(
+        self, half: int, given: NDArray[np.bool_], only: bool, touches: NDArray[np.bool_], needed: NDArray[np.bool_]
+    ) -> None:
         self.half, self.only = half, only
         self.given, self.solved = np.flatnonzero(given), np.flatnonzero(~given)
         open_ = touches[:, ~given].any(axis=1)
-        self.open, self.bound = np.flatnonzero(open_), np.flatnonzero(~open_)
+        self.open, self.bound = np.flatnonzero(open_ & needed), np.flatnonzero(~open_)
 
 
 def at_values(problem: MotionProblem, values: Mapping[str, Fraction]) -> MotionProblem:

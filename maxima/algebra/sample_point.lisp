@@ -14,6 +14,8 @@
 (defvar *zero-share-of-constraints* (expt 10 -55))
 (defvar *zero-share-of-floats* 1d-12)
 (defvar *share-of-dependence* (expt 10 -6) "The same of gradients, at a point given in some ten digits.")
+(defvar *close* double-float-epsilon "A correction in floating point by less of the largest coordinate is the last.")
+(defvar *close-to-root* 1d-9 "The same where the gradients are as dependent as at the root.")
 (defvar *small-coordinate* (expt 10 -20))
 (defvar *floating* nil "Whether numbers are floating-point ones, for a start.")
 (defvar *most-corrections* 400)
@@ -160,11 +162,11 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun residuals-at (point) (mapcar #'(lambda (f) (value-at (expression-term f) point)) *equations*))
 
-(defun point-near-manifold (point)
+(defun point-near-manifold (point &optional damped)
   "The same in floating point, which is quicker; nil where that does not get there."
   (let* ((*floating* t)
          (*zero-share* *zero-share-of-floats*)
-         (found (errset (catch 'irregular-point (newton-iteration (converted-point point #'float-of))))))
+         (found (errset (catch 'irregular-point (newton-iteration (converted-point point #'float-of) damped)))))
     (if (car found) (point-with-unknowns-of (car found) point))))
 
 (defun point-with-unknowns-of (found point)
@@ -227,7 +229,7 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
       (let ((residuals (residuals-at point)))
         (if (all-of-p #'zerop residuals) (return (copied-point point)))
         (let* ((corrections (corrections-of residuals point)) (size (largest-correction corrections)))
-          (if (and *floating* (< size (* double-float-epsilon (largest-coordinate point)))) (return point))
+          (if (and *floating* (< size (* *close* (largest-coordinate point)))) (return point))
           (if (null bound) (setq bound (* *runaway* (max size (largest-coordinate point)))))
           (if (or (> size bound) (and (> attempt *impatience*) last-size (>= size last-size))) (return nil))
           (setq last-size size
@@ -377,8 +379,8 @@ vanish; false where Newton's method does not get there."
         (cons '(mlist) (mapcar #'(lambda (x) (maxima-number (plain-number (coordinate x root)))) *unknowns*)))))
 
 (defun root-of-independent-equations (point)
-  "Where gradients are dependent next to a root, those of redundant equations, that root; nil where there is none."
-  (let* ((rows (numeric-rows *jacobian* point))
+  "Where gradients are dependent at a root, those of redundant equations, that root; nil where there is none."
+  (let* ((rows (numeric-rows *jacobian* (let ((*close* *close-to-root*)) (or (point-near-manifold point t) point))))
          (numbers (let ((*zero-share* *share-of-dependence*)) (independent-rows-of rows)))
          (root (if (< (length numbers) (length *equations*))
                    (let ((*equations* (items-of-numbers numbers *equations*))

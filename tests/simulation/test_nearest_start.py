@@ -114,3 +114,25 @@ def test_start_beyond_a_minimum_is_found_in_all_units(function, root, mass, leng
     assert scene.simulate(samples=2)["y"][0] / unit == pytest.approx(root, rel=1e-12)
     rows = holonom.sweep(scene, values={"p": [1, 2]}, keep=["at(y,0)"]).to_pandas()
     assert rows["at(y,0)"].to_numpy() / unit == pytest.approx(root, rel=1e-12)
+
+
+PARALLEL_CRANKS = """
+P : [[x1, y1], [x2, y2], [x3, y3]]$  O : [[0, 0], [1, 0], [1, 1]]$
+squared(v) := v . v$
+apart(Q, i, k) := squared(Q[i] - Q[k])$
+system : holonomic_system(coordinates = flatten(P), parameters = [p],
+  kinetic_energy = apply("+", map(squared, dot(P)))/2,
+  constraints = append(p*makelist(squared(P[i] - O[i]) - 1, i, 3),
+    makelist(apart(P, i, mod(i, 3) + 1) - apart(O, i, mod(i, 3) + 1), i, 3)))$
+motion : holonomic_scene(system, parameter_values = [p = 1], initial_state = [], time_span = [0, 1/100],
+  initial_guess = [x1 = 62/100, y1 = 79/100, x2 = 161/100, y2 = 81/100, x3 = 158/100, y3 = 181/100,
+    dot(x1) = -8/10, dot(y1) = 6/10, dot(x2) = -8/10, dot(y2) = 6/10, dot(x3) = -8/10, dot(y3) = 6/10])$
+"""
+
+
+@pytest.mark.parametrize("settings", [{}, {"p": 2}], ids=["maxima", "set"])
+def test_start_of_redundant_constraints_is_near_the_guess(settings):
+    """A plate on three parallel cranks, whose gradients are dependent where the constraints hold, not at the guess."""
+    motion = holonom.system(PARALLEL_CRANKS, **settings).simulate(samples=2)
+    assert motion["x1"][0] == pytest.approx(0.60055, abs=1e-3)  # the mean of the cranks, scaled to length 1
+    assert motion["y3"][0] - 1 == pytest.approx(0.79961, abs=1e-3)
