@@ -414,3 +414,16 @@ def test_a_polynomial_motion_under_servo_constraints_is_one():
     text = """system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2, forces = [F])$
         s : holonomic_scene(system, servo_constraints = [x = t^3], initial_state = [])$"""
     assert holonom.system(text).series(order=14).radius.note == POLYNOMIAL.note
+
+
+def test_series_of_more_coordinates_than_a_call_takes_arguments():
+    """80 pendulums, each ddot(x) = -sin(x)."""
+    scene = holonom.system("""
+q : makelist(concat(x, i), i, 80)$
+system : holonomic_system(coordinates = q, kinetic_energy = apply("+", map(lambda([x], dot(x)^2), q))/2,
+  potential_energy = apply("+", map(lambda([x], -cos(x)), q)))$
+run : holonomic_scene(system, time_span = [0, 1],
+  initial_state = append(map(lambda([x], x = 1), q), map(lambda([x], dot(x) = 0), q)))$
+""")
+    found = scene.series(order=3, digits=30)
+    assert float(found.coordinates["x80"][2]) == pytest.approx(-math.sin(1) / 2)
