@@ -162,10 +162,8 @@ def summary(rows: Iterable[Row]) -> Iterator[str]:
     """How our program grows from 16 to 64 links, and the ratios that matter at 64."""
     rows = tuple(rows)
     ours, compiled = ({row.links: row for row in rows if row.method == method} for method in (OURS, HEYOKA))
-    short, middle, long = ours[1], ours[16], ours[64]
-    derivation = _exponent(middle.derive - short.derive, long.derive - short.derive)
+    middle, long = ours[16], ours[64]
     yield f"operations grow as N^{_exponent(middle.operations, long.operations):.2f}"
-    yield f"derivation, above the start-up, grows as N^{derivation:.2f}"
     for row in (long, compiled[64]):
         yield f"{row.method}, scene to compiled callable at 64 links: {row.derive + row.compile:.2f} s"
         ratio = long.one_point / row.many_points

@@ -84,7 +84,7 @@ def main(directory: Path) -> None:
 def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Setting]], dict[str, str]]:
     """The last two settings of each method, timed in turns; none, and the reason, where it does not get there.
 
-    Our engines without projection are timed at the tolerances of those with projection, too.
+    Our engines are timed at heyoka's tolerances, too; without projection at those with projection.
     """
     reference = find_reference(problem, [motion.until], DIGITS)
     settings: dict[str, list[Setting]] = {}
@@ -95,7 +95,7 @@ def compared(motion: Motion, problem: MotionProblem) -> tuple[dict[str, list[Set
         print(f"{motion.name}: {name} {reasons[name]}", file=sys.stderr)
     as_heyoka = TOLERANCES[TOLERANCES.index(settings[HEYOKA][0].tolerance) :]
     for engine, set_up, tolerances in ((TAYLOR, unrolled, as_heyoka), (RUNGE_KUTTA, in_c, TOLERANCES)):
-        compared_at: set[float] = set()
+        compared_at = {s.tolerance for s in settings[HEYOKA]}
         for name, stabilization in ((engine, Stabilization.PROJECTION), (unprojected(engine), Stabilization.NONE)):
             prepare = partial(holonom, motion, problem, partial(set_up, stabilization=stabilization))
             found, reasons[name] = tighten(prepare, motion, reference, tolerances)
