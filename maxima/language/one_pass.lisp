@@ -134,7 +134,7 @@
 (defun $items_failing (test items) (mlist-of (remove-if #'(lambda (item) (mfuncall test item)) (cdr items))))
 
 (defun $repeated_items (items)
-  "The atoms of a list that stand in it before."
+  "The items of a list that stand in it before."
   (let ((met (table-for (cdr items))))
     (mlist-of (remove-if-not #'(lambda (x) (or (gethash x met) (progn (setf (gethash x met) t) nil))) (cdr items)))))
 
