@@ -58,6 +58,7 @@ class Target:
     statement: str
     arithmetic: Arithmetic[Formula]
     type: str = "double"
+    reads_in_place: bool = False  # formulas contain the inputs' expressions, rather than names of copies
 
 
 def c_source(program: Program) -> str:
@@ -213,11 +214,13 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     str
         One statement.
     """
-    used, names = names_used(program), {}
-    for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
-        names[name] = infix.atom(f"v{index}")
-        if name in used:
-            yield target.statement.format(name=f"v{index}", formula=value)
+    names = dict(zip(program.inputs, map(infix.atom, inputs), strict=True))
+    if not target.reads_in_place:
+        used = names_used(program)
+        for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
+            names[name] = infix.atom(f"v{index}")
+            if name in used:
+                yield target.statement.format(name=f"v{index}", formula=value)
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")
@@ -375,12 +378,12 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
     """Return C's arithmetic for a prefix of its functions and a format of its numbers."""
 
     def power(base: Formula, exponent: Fraction) -> Formula:
+        if (function := ROOTS_AND_POWERS.get(exponent)) is not None:
+            return infix.call(prefix + function, base)
         if exponent < 0:
             return infix.divide(number(1.0), power(base, -exponent))
         if exponent == 1:
             return base
-        if exponent in ROOTS_AND_POWERS:
-            return infix.call(prefix + ROOTS_AND_POWERS[exponent], base)
         for step in (2, 3):
             if exponent in MULTIPLIED_OUT and exponent % step == 0:
                 return power(power(base, exponent / step), Fraction(step))
@@ -398,5 +401,5 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
     )
 
 
-ONE = Target("const double {name} = {formula};", _arithmetic("", _scalar))
+ONE = Target("const double {name} = {formula};", _arithmetic("", _scalar), reads_in_place=True)
 MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes), "lanes")
