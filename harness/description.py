@@ -173,6 +173,7 @@ class DescribedSystem:
     forces: tuple[DescribedForces, ...] = entry("Q.")
     constraints: tuple[Expression, ...] = entry("f, each zero on every motion.")
     drawing: tuple[DescribedShape, ...] = entry("Shapes, of which the system's picture is made.")
+    orientations: tuple[Expression, ...] = entry("Expressions whose signs no motion changes.", ())
     switches: tuple[Name, ...] = entry("Names in T, V and Q: 1 in a scene that has them among its effects, else 0.", ())
 
 

@@ -131,6 +131,8 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
         console.print(f"Whole turns of {', '.join(equilibria.turns)} are left out.")
     for e in equilibria.reversals:
         console.print(f"Of both signs of {', '.join(e)}, one is listed.")
+    if equilibria.orientations:
+        console.print("No motion changes the orientations: those listed have the ones of the initial state.")
 
 
 def show_branches(console: "Console", branches: "Branches") -> None:

@@ -50,6 +50,7 @@ DISTANCES = 4.0 ** np.arange(12)  # in terms of nominal sizes, at which changes 
 CHANGED = 0.1  # relative change of the stiffness at the size of a coordinate
 BATCH = 64  # coordinates along which it is looked for at once
 ITERATIONS = 60
+STEPS, CORRECTIONS = 16, 6  # along the constraints to a starting point, and onto them after each
 CONVERGED = 1e-11  # step of Newton's method in terms of the sizes
 BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was met
 LONGEST_STEP = 2.0  # in terms of the sizes
@@ -134,15 +135,20 @@ class Equilibria(Documented, Shown):
     turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
     reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")
     count: int | None = entry(
-        "Number of real solutions up to turns and signs, by a Groebner basis and Hermite's form; null if the equations "
-        "are not polynomial, too large, or have infinitely many complex solutions, or if redundant constraints may "
-        "leave out solutions.",
+        "Number of real solutions up to turns and signs, with the initial state's orientations, by a Groebner basis "
+        "and Hermite's form; null if the equations are not polynomial, too large, or have infinitely many complex "
+        "solutions, or if redundant constraints may leave out solutions.",
         minimum=0,
     )
 
     regular: bool = entry(
         "Whether the constraints are known to have independent gradients wherever they hold; elsewhere, as at cusps, "
         "nothing is looked for."
+    )
+    orientations: int = entry(
+        "Number of expressions whose signs no motion changes; those found have the signs of the initial state.",
+        0,
+        minimum=0,
     )
 
     @property
@@ -209,7 +215,7 @@ def find_equilibria(
     same = search.equivalence(np.random.default_rng(seed))
     rational = _rational(problem, equations, controls)
     turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
-    solutions = _all_solutions(problem, equations, values | rational, turns)
+    solutions = _all_solutions(problem, equations, values | rational, turns, search.orientation.tolist())
     given = [[each.coordinates[name] for name in equations.coordinates] for each in near]
     given += [] if solutions is None else solutions.approximate(equations.coordinates)
     points = search.starts(starts, np.random.default_rng(seed), given)
@@ -217,19 +223,24 @@ def find_equilibria(
     names = turns, tuple(reversals)
     first = problem.scene, values, {u: str(x) for u, x in rational.items()}, starts
     if solutions is None:
-        return Equilibria(*first, found, *left_out, *names, None, False)
+        return Equilibria(*first, found, *left_out, *names, None, False, search.orientation.size)
     if rational.keys() == values.keys():
         found = tuple(replace(each, exact=solutions.exact({**each.coordinates, **each.multipliers})) for each in found)
     count = solutions.count >> len(reversals)
-    return Equilibria(*first, found, *left_out, *names, count, solutions.regular)
+    return Equilibria(*first, found, *left_out, *names, count, solutions.regular, search.orientation.size)
 
 
 def _all_solutions(
-    problem: MotionProblem, equations: LinearEquations, controls: Mapping[str, float | Fraction], turns: Sequence[str]
+    problem: MotionProblem,
+    equations: LinearEquations,
+    controls: Mapping[str, float | Fraction],
+    turns: Sequence[str],
+    orientation: Sequence[int],
 ) -> "RealSolutions | None":
     from .real_solutions import solve_exactly
 
-    return solve_exactly(equations, problem.independent, [Fraction(str(x)) for x in controls.values()], turns)
+    numbers = [Fraction(str(x)) for x in controls.values()]
+    return solve_exactly(equations, problem.independent, numbers, turns, orientation)
 
 
 def _rational(problem: MotionProblem, equations: LinearEquations, given: Mapping[str, float]) -> dict[str, Fraction]:
@@ -266,6 +277,7 @@ class _Search:
         self._first = state[: self._n]
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
         self._sizes = self._distances(nominal_of(problem).coordinates)
+        self.orientation = np.nan_to_num(self._orientation(self._first)).astype(int)
 
     def _distances(self, nominal: Vector) -> Vector:
         """Return a distance for each coordinate at which the stiffness changes.
@@ -342,11 +354,57 @@ class _Search:
     def starts(self, count: int, random: np.random.Generator, given: Sequence[Sequence[float]]) -> Matrix:
         """Return starting points, shape (n, k).
 
-        They are the scene's own, random ones around it and around zero, and the given ones.
+        They are the scene's own, random ones around it and around zero, and the given ones. If there are orientations,
+        the random ones are on the constraints, along random directions from the scene's own.
         """
         spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
+        steps = spreads * random.normal(size=(self._n, count - 1))
+        if self.orientation.size:
+            return np.column_stack([self._first, self._along_constraints(steps), *given])
         around = np.outer(self._first, np.arange(count - 1) % 2)
-        return np.column_stack([self._first, around + spreads * random.normal(size=(self._n, count - 1)), *given])
+        return np.column_stack([self._first, around + steps, *given])
+
+    def _along_constraints(self, ways: Matrix) -> Matrix:
+        """Return the ends of k ways along the constraints, shape (n, k).
+
+        They begin at the initial state, go straight ahead and keep its orientations. One ends early where Newton's
+        method does not lead from a step back to the constraints.
+        """
+        sizes, q = self._sizes[:, None], np.repeat(self._first[:, None], ways.shape[1], axis=1)
+        ways = self._tangential(q, ways / sizes)
+        lengths = np.linalg.norm(ways, axis=0)
+        for _ in range(STEPS):
+            ways = self._tangential(q, ways)
+            ways *= lengths / or_one(np.linalg.norm(ways, axis=0))
+            moved = q + sizes * ways / STEPS
+            with np.errstate(all="ignore"):
+                for _ in range(CORRECTIONS):
+                    change = self._correction(moved)
+                    moved -= sizes * change
+                on_them = np.max(np.abs(change), axis=0) <= SAME
+                q = np.where(on_them & self._is_oriented(moved), moved, q)
+        return q
+
+    def _tangential(self, q: Matrix, ways: Matrix) -> Matrix:
+        """Return the parts of k ways along the constraints, all in terms of sizes."""
+        J, _ = self._scaled_constraints(q)
+        across = np.matvec(np.linalg.pinv(J, rcond=DEPENDENT), np.matvec(J, ways.T))
+        return ways - across.T
+
+    def _correction(self, q: Matrix) -> Matrix:
+        """Return the least ways of k places from the constraints, in terms of sizes."""
+        J, residuals = self._scaled_constraints(q)
+        return np.matvec(np.linalg.pinv(J, rcond=DEPENDENT), residuals).T
+
+    def _scaled_constraints(self, q: Matrix) -> tuple[Matrix, Matrix]:
+        """Return J, in the coordinates' sizes, and f at k places.
+
+        Their shapes are (k, g, n) and (k, g). Where they have no value, J is zero and f is nan.
+        """
+        here = self._at(q, np.zeros((len(self._equations.multipliers), q.shape[1])))
+        J, residuals = (np.moveaxis(here[name], -1, 0) for name in ("constraint_by_q", "constraint"))
+        known = np.isfinite(J).all(axis=(1, 2)) & np.isfinite(residuals).all(axis=1)
+        return np.where(known[:, None, None], J * self._sizes, 0.0), np.where(known[:, None], residuals, np.nan)
 
     def equilibria(self, starts: Matrix, same: Equivalence) -> tuple[tuple[Equilibrium, ...], int, int]:
         """Return the equilibria that Newton's method finds, and the number left out.
@@ -374,6 +432,8 @@ class _Search:
         """
         more, singular = 0, []
         for q, multipliers in filter(self._satisfies_all_constraints, self._solved(starts)):
+            if not self._is_oriented(q):
+                continue
             q = same.chosen(q)
             if any(self._close(q, other.q, same) for other in known):
                 continue
@@ -392,6 +452,14 @@ class _Search:
             else:
                 known.append(found)
         return more, singular
+
+    def _is_oriented(self, q: Matrix) -> NDArray[np.bool_]:
+        """Return True for places with the signs of the initial state."""
+        return np.all(self._orientation(q).T * self.orientation >= 0, axis=-1)
+
+    def _orientation(self, q: Vector) -> Vector:
+        """Return the signs that no motion changes, nan where one has no value."""
+        return np.sign(self._equations.orientation(self._point(q, np.zeros(len(self._equations.multipliers)))))
 
     def _is_between_switchings(self, q: Vector) -> bool:
         return changing_function(self._problem, self._t, np.concatenate([q, np.zeros(self._n)])) is None

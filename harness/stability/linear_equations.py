@@ -66,6 +66,10 @@ class LinearEquations:
         "A_rate[s,k]; what is absent is zero."
     )
     outputs: tuple[str, ...] = entry("Observed quantities with names of their own.")
+    orientations: Program | None = entry(
+        "Program of t, q and the controls with a law: orientation[k], whose signs no motion changes; null without any.",
+        None,
+    )
 
     @cached_property
     def _evaluate(self) -> NumpyFunction:
@@ -74,6 +78,10 @@ class LinearEquations:
     @cached_property
     def _evaluate_roughly(self) -> NumpyFunction:
         return NumpyFunction(with_factors(self.program, [f"factor[{k}]" for k in range(FACTORS)]))
+
+    @cached_property
+    def _orientations(self) -> NumpyFunction:
+        return NumpyFunction(self.orientations)
 
     @cached_property
     def _places(self) -> list[tuple[str, tuple[int, ...]]]:
@@ -165,6 +173,23 @@ class LinearEquations:
         return found | cut | {
             "reactions": np.concatenate(reactions, axis=1), "output_by_forces": np.concatenate(own_by_forces, axis=1)
         }  # fmt: skip
+
+    def orientation(self, point: "Point") -> Vector:
+        """Return the expressions whose signs no motion changes.
+
+        Parameters
+        ----------
+        point : Point
+            Or several of them, with a last axis more, which the result then has.
+
+        Returns
+        -------
+        ndarray, shape (k,)
+        """
+        if self.orientations is None:
+            return np.empty((0, *point.state.shape[1:]))
+        n, r = len(self.coordinates), len(self.controls)
+        return self._orientations([point.t, *point.state[:n], *point.controls[:r]])
 
     def natural(self, independent: Sequence[int]) -> int:
         """Return the number of constraints with reactions.

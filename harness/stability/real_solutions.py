@@ -12,6 +12,9 @@ be rational is the decimal number that is written. From a Groebner basis over th
 - Multipliers of independent constraints suffice if their gradients have full rank wherever f = 0, and the others depend
   on them there: the maximal minors have no common zero if 1 is in their ideal with f (Cox, Little & O'Shea, Ideals,
   Varieties, and Algorithms, section 4.1, theorem 1), and those with one more row vanish if they are in that of f.
+- With a polynomial g in it, the trace of the multiplication by g b_i b_j, its signature is the number of solutions with
+  g > 0 less that with g < 0. These differences for all products of several g count the solutions with given signs
+  (Basu, Pollack & Roy, Algorithms in Real Algebraic Geometry, sections 4.6 and 2.3).
 - The values of an unknown are roots of the characteristic polynomial of the multiplication by it (section 2.4, theorem
   4.5 of the same book). The numeric solution chooses one of them.
 - The values of the monomials b at a solution are an eigenvector of the multiplication by any polynomial (section 2.4,
@@ -56,7 +59,8 @@ class RealSolutions:
     Attributes
     ----------
     count : int
-        Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles.
+        Number of distinct real solutions in coordinates and multipliers, up to whole turns of angles, with the given
+        orientation.
     regular : bool
         Whether the gradients of the independent constraints are known to be independent wherever these hold. Elsewhere
         a system may be at rest without multipliers that balance its forces.
@@ -173,7 +177,11 @@ def _real_roots(polynomial: sympy.Poly) -> list[sympy.Expr]:
 
 
 def solve_exactly(
-    equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction], turns: Sequence[str]
+    equations: LinearEquations,
+    independent: Sequence[int],
+    controls: Sequence[Fraction],
+    turns: Sequence[str],
+    orientation: Sequence[int],
 ) -> RealSolutions | None:
     """Count the states at rest for constant controls.
 
@@ -187,6 +195,8 @@ def solve_exactly(
         Constant values, in the order of the equations.
     turns : sequence of str
         Coordinates that whole turns do not change.
+    orientation : sequence of int
+        Sign of each of the equations' orientations, 0 for any.
 
     Returns
     -------
@@ -195,9 +205,12 @@ def solve_exactly(
         constraints taken for independent are not known to be so at all states: others have other solutions there.
     """
     others = [beta for beta in range(len(equations.multipliers)) if beta not in independent]
-    rest, constraints, gradients = _polynomials(equations, independent, controls, turns)
+    rest, constraints, gradients, orientations = _polynomials(equations, independent, controls, turns)
     polynomials = [*rest, *constraints]
     if not polynomials or not _are_small(polynomials):
+        return None
+    signed = [(g, sign) for g, sign in zip(orientations, orientation, strict=True) if sign]
+    if any(g is UNDEFINED for g, _ in signed):
         return None
     if others and not _replaceable(others, independent, constraints, gradients):
         return None
@@ -206,7 +219,7 @@ def solve_exactly(
     if standard is None:
         return None
     regular = _are_regular([gradients[beta] for beta in independent], constraints)
-    return RealSolutions(_count_real_zeros(basis, standard), regular, basis, standard)
+    return RealSolutions(_count_with_signs(basis, standard, signed), regular, basis, standard)
 
 
 def rational_controls(equations: LinearEquations, t: str) -> dict[str, Fraction]:
@@ -284,8 +297,8 @@ def _minors(rows: Sequence[Sequence[PolyElement]], ring: PolyRing) -> list[PolyE
 
 def _polynomials(
     equations: LinearEquations, independent: Sequence[int], controls: Sequence[Fraction], turns: Sequence[str]
-) -> tuple[list[Any], list[Any], list[list[Any]]]:
-    """Return r and f at rest, and the gradients of f.
+) -> tuple[list[Any], list[Any], list[list[Any]], list[Any]]:
+    """Return r and f at rest, the gradients of f and the orientations.
 
     Zeros are left out of r and f. What is not a polynomial is `UNDEFINED`.
     """
@@ -301,7 +314,7 @@ def _polynomials(
     ]
     unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ANGLE.values())]
     if not 0 < len(unknowns) <= UNKNOWNS:
-        return [], [], []
+        return [], [], [], []
     polynomials, *generators = ring(unknowns, QQ, grevlex)
     inputs = dict.fromkeys(program.inputs, polynomials.zero) | dict(zip(unknowns, generators, strict=True))
     inputs |= dict.fromkeys(angles, UNDEFINED)
@@ -313,7 +326,16 @@ def _polynomials(
         [found[name] for name in forces if found.get(name)],
         [found[name] for name in constraints if found.get(name)] + circles,
         [[found.get(name, polynomials.zero) for name in row] for row in gradients],
+        _orientations(equations, angles, inputs, _arithmetic(polynomials)),
     )
+
+
+def _orientations(
+    equations: LinearEquations, angles: Sequence[str], inputs: Mapping[str, Any], arithmetic: Arithmetic[Any]
+) -> list[Any]:
+    if equations.orientations is None:
+        return []
+    return list(run_program(_with_angles(equations.orientations, angles), inputs, arithmetic).values())
 
 
 def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:
@@ -394,15 +416,31 @@ def _standard_monomials(basis: Sequence[PolyElement]) -> list[tuple[int, ...]] |
     return standard if len(standard) <= SOLUTIONS else None
 
 
+def _count_with_signs(
+    basis: Sequence[PolyElement], standard: Sequence[tuple[int, ...]], signed: Sequence[tuple[PolyElement, int]]
+) -> int:
+    """Count the distinct real zeros at which each polynomial has its sign."""
+    one = basis[0].ring.one
+    subsets = product(*([(one, 1), (g, sign)] for g, sign in signed))
+    weighted = ((prod((g for g, _ in some), start=one), prod(sign for _, sign in some)) for some in subsets)
+    return sum(sign * _signature(basis, standard, weight) for weight, sign in weighted) >> len(signed)
+
+
 def _count_real_zeros(basis: Sequence[PolyElement], standard: Sequence[tuple[int, ...]]) -> int:
     """Count the distinct real zeros of a Groebner basis."""
+    return _signature(basis, standard, basis[0].ring.one)
+
+
+def _signature(basis: Sequence[PolyElement], standard: Sequence[tuple[int, ...]], weight: PolyElement) -> int:
+    """Return the signature of Hermite's form with a weight."""
     monomials = [basis[0].ring({m: QQ.one}) for m in standard]
     products = [[(a * b).rem(basis) for b in monomials] for a in monomials]
     traces = {
         m: sum((each.get(n, QQ.zero) for n, each in zip(standard, row, strict=True)), QQ.zero)
         for m, row in zip(standard, products, strict=True)
     }
-    form = [[sum((c * traces[m] for m, c in each.iterterms()), QQ.zero) for each in row] for row in products]
+    weighted = [[(weight * each).rem(basis) for each in row] for row in products]
+    form = [[sum((c * traces[m] for m, c in each.iterterms()), QQ.zero) for each in row] for row in weighted]
     coefficients = DomainMatrix(form, (len(form), len(form)), QQ).charpoly()
     mirrored = [-c if k % 2 else c for k, c in enumerate(coefficients)]
     return _sign_changes(coefficients) - _sign_changes(mirrored)

@@ -128,7 +128,8 @@
     '(($title . identity) ($source . identity) ($coordinates . described-names) ($controls . described-names)
       ($parameters . described-names) ($switches . described-names)
       ($kinetic_energy . described-effects) ($potential_energy . described-effects)
-      ($forces . described-forces) ($constraints . described-list) ($drawing . described-drawing))))
+      ($forces . described-forces) ($constraints . described-list) ($orientations . described-list)
+      ($drawing . described-drawing))))
 
 (defun scene-entries (document)
   (observing (described-values (member-of document "outputs")) (entries-anew document
