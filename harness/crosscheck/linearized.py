@@ -20,6 +20,7 @@ import scipy.linalg
 import sympy as sp
 from mpmath import mp
 
+from ..described import expression
 from ..description import Description
 from ..simulation.matrices import Matrix, Vector
 from .described_motion import DescribedMotion
@@ -93,6 +94,8 @@ class DescribedEquations:
             for group, symbols in self._groups.items():
                 parts[f"{row}_by_{group}"] = [slope for each in expressions for slope in gradient(each, symbols)]
         self._shapes = {name: len(each) for name, each in parts.items()}
+        orientations = map(expression, description.content["system"].get("orientations", ()))
+        self.orientations = [exact(each).subs(values) for each in orientations]
         self._at_rest = [each.subs(values) for row in ("equation", "constraint") for each in self._rows[row]]
         self._smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
         self._steps = Steps(self._smooth)
@@ -144,6 +147,23 @@ class DescribedEquations:
         constant = {sp.Symbol(name, real=True): sp.Rational(str(value)) for name, value in controls.items()}
         time = {sp.Symbol("t", real=True): sp.Rational(float(self.motion.first_time))}
         return [each.subs(dict.fromkeys(moving, 0) | constant | time) for each in self._at_rest]
+
+    def orientation(self, point: Mapping[str, float | sp.Expr]) -> list[int | None]:
+        """Return the signs that no motion changes.
+
+        Parameters
+        ----------
+        point : mapping of str to number
+            Values of some names.
+
+        Returns
+        -------
+        list of int or None
+            None where another name decides.
+        """
+        values = {sp.Symbol(name, real=True): sp.sympify(value) for name, value in point.items()}
+        found = [each.subs(values) for each in self.orientations]
+        return [int(np.sign(float(each))) if each.is_number else None for each in found]
 
     def names(self, group: str) -> list[str]:
         """Return the names of a group of symbols.
@@ -520,14 +540,20 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
     wrong = any(u not in controls or float(Fraction(x)) != controls[u] for u, x in rational.items())
     yield Condition("rational controls", wrong or (rational.keys() != controls.keys() and any(_of(found, "exact"))))
     equations_at_rest = equations.at_rest(controls | rational)
+    yield from _conditions_on_orientations(equations, content, at_rest)
     if content["count"] is not None:
-        count = count_real_solutions(equations_at_rest, _symbols((*q, *reactions)))
+        # a positive polynomial is the square of two numbers
+        roots = [sp.Dummy(real=True) for _ in equations.orientations]
+        signs = equations.orientation({**at_rest, **found[0]["coordinates"]}) if found else [1] * len(roots)
+        oriented = [root**2 - sign * g for root, g, sign in zip(roots, equations.orientations, signs, strict=True)]
+        conditions, unknowns = [*equations_at_rest, *oriented], [*_symbols(q), *roots]
+        count = count_real_solutions(conditions, [*unknowns, *_symbols(reactions)])
         if count is None:  # of dependent constraints, some multipliers are chosen as zero
             used = [name for name in reactions if any(each["multipliers"][name] for each in found)]
             none = dict.fromkeys(_symbols(name for name in reactions if name not in used), 0)
-            count = count_real_solutions([each.subs(none) for each in equations_at_rest], _symbols((*q, *used)))
-        signs = 2 ** len(content["reversals"])
-        yield Condition("number of solutions", None if count is None else count - signs * content["count"])
+            count = count_real_solutions([each.subs(none) for each in conditions], [*unknowns, *_symbols(used)])
+        listed = content["count"] << len(content["reversals"]) + len(roots)
+        yield Condition("number of solutions", None if count is None else count - listed)
     known: list[Vector] = []
     for each in found:
         place = f"{each['name']}: "
@@ -551,6 +577,20 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         yield Condition(f"{place}constraints", here["constraint"], size)
         yield from _conditions_on_stability(place, equations, here, each)
         yield from _conditions_on_exact_values(place, equations_at_rest, each)
+
+
+def _conditions_on_orientations(
+    equations: DescribedEquations, content: Mapping[str, Any], at_rest: Mapping[str, float]
+) -> Iterator[Condition]:
+    """Compare signs at the places found, and those that the initial state decides."""
+    yield Condition("number of orientations", content.get("orientations", 0) != len(equations.orientations))
+    scene = equations.motion.scene
+    first = equations.orientation({**at_rest, **scene.initial_state})
+    for each in content["found"]:
+        here = equations.orientation({**at_rest, **each["coordinates"]})
+        wrong = any(one not in (None, other) for one, other in zip(first, here, strict=True))
+        yield Condition(f"{each['name']}: orientations", wrong)
+        first = here
 
 
 def _conditions_on_exact_values(

@@ -664,8 +664,20 @@ def test_solutions_with_the_orientations_of_the_initial_state_are_counted(orient
     found = system.equilibria()
     assert found.count == len(found) == count
     assert found.complete
+    document = json.loads(json.dumps(published(Publication.EQUILIBRIA, found.document())))
+    assert verify_result(system.description, document).verdict is Verdict.AGREES
+    assert (
+        verify_result(system.description, {**document, "count": count + 1, "complete": False}).verdict
+        is Verdict.DISAGREES
+    )
     if orientations:
         assert all(each.coordinates["x"] == pytest.approx(1) for each in found)
+        mirrored = copy.deepcopy(document)
+        for each in mirrored["found"]:
+            each["coordinates"]["x"] *= -1
+            each["multipliers"]["lambda1"] *= -1
+            each["exact"] = {}
+        assert verify_result(system.description, mirrored).verdict is Verdict.DISAGREES
 
 
 JOINTS = {
