@@ -261,6 +261,9 @@ def test_the_right_hand_side_serves_another_integrator(pendulum):
     motion = pendulum.simulate(until=2, samples=2)
     assert found.y[0, -1] == pytest.approx(motion["x"][-1], abs=1e-8)
     assert f(0.0, np.stack([f.y0, f.y0], axis=1))[:, 1] == pytest.approx(f(0.0, f.y0), rel=1e-15)
+    for other in (f.y0[1:], [*f.y0, 0.0], 1.0):
+        with pytest.raises(ValueError, match="needed"):
+            f(0.0, other)
 
 
 def test_redundant_constraints_have_the_right_hand_side_of_the_independent_ones():

@@ -49,7 +49,14 @@ class NumpyFunction:
         -------
         ndarray, shape (outputs, *points)
             Where the program's pivots vanish, infinities and nans.
+
+        Raises
+        ------
+        ValueError
+            There are more or fewer inputs.
         """
+        if len(inputs) != len(self.inputs):
+            raise ValueError(f"{len(self.inputs)} inputs needed, not {len(inputs)}")
         arrays = np.broadcast_arrays(*(np.asarray(values, dtype=float) for values in inputs))
         return self.at_points([array.reshape(-1) for array in arrays]).reshape(len(self.outputs), *arrays[0].shape)
 

@@ -50,8 +50,28 @@ class RightHandSide:
         return NumpyFunction(replace(program, inputs=("t", *self.names)))
 
     def __call__(self, t: float, y: ArrayLike) -> NDArray[np.float64]:
-        """Return the velocities and accelerations."""
+        """Return the velocities and accelerations.
+
+        Parameters
+        ----------
+        t : float or ndarray
+            The time, or that of each state.
+        y : array_like, shape (2n,) or (2n, points)
+            The state.
+
+        Returns
+        -------
+        ndarray
+            The time derivatives, in the shape of y.
+
+        Raises
+        ------
+        ValueError
+            y has another number of components.
+        """
         state = np.asarray(y, dtype=float)
+        if state.ndim == 0 or len(state) != len(self.names):
+            raise ValueError(f"shape ({len(self.names)},) or ({len(self.names)}, points) needed, not {state.shape}")
         times = np.broadcast_to(np.asarray(t, dtype=float), state.shape[1:])
         require_law_at(self.problem, times.max(initial=self.t0))
         return np.concatenate([state[len(state) // 2 :], self._accelerations([times, *state])])

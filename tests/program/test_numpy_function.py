@@ -26,3 +26,9 @@ def test_blocks_join():
 
 def test_no_points_give_no_values():
     assert NumpyFunction(PENDULUM)([np.empty(0), 0.0, -1.0, 0.0, 0.0, 9.81]).shape == (3, 0)
+
+
+@pytest.mark.parametrize("count", [5, 7])
+def test_more_or_fewer_inputs_are_refused(count):
+    with pytest.raises(ValueError, match="needed"):
+        NumpyFunction(PENDULUM)([1.0] * count)
