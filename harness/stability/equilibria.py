@@ -354,15 +354,12 @@ class _Search:
     def starts(self, count: int, random: np.random.Generator, given: Sequence[Sequence[float]]) -> Matrix:
         """Return starting points, shape (n, k).
 
-        They are the scene's own, random ones around it and around zero, and the given ones. If there are orientations,
-        the random ones are on the constraints, along random directions from the scene's own.
+        They are the scene's own, random ones around zero and, on the constraints, around it, and the given ones.
         """
         spreads = np.resize(SPREADS, count - 1) * self._sizes[:, None]
-        steps = spreads * random.normal(size=(self._n, count - 1))
-        if self.orientation.size:
-            return np.column_stack([self._first, self._along_constraints(steps), *given])
-        around = np.outer(self._first, np.arange(count - 1) % 2)
-        return np.column_stack([self._first, around + steps, *given])
+        points = spreads * random.normal(size=(self._n, count - 1))
+        points[:, 1::2] = self._along_constraints(points[:, 1::2])
+        return np.column_stack([self._first, points, *given])
 
     def _along_constraints(self, ways: Matrix) -> Matrix:
         """Return the ends of k ways along the constraints, shape (n, k).
@@ -381,7 +378,7 @@ class _Search:
                 for _ in range(CORRECTIONS):
                     change = self._correction(moved)
                     moved -= sizes * change
-                on_them = np.max(np.abs(change), axis=0) <= SAME
+                on_them = np.max(np.abs(change), axis=0, initial=0.0) <= SAME
                 q = np.where(on_them & self._is_oriented(moved), moved, q)
         return q
 
@@ -686,7 +683,7 @@ class _Search:
 
     def _point(self, q: Vector, multipliers: Vector) -> Point:
         zeros = np.zeros_like(q)
-        controls = np.repeat(self._controls[:, None], q[0].size, axis=1).reshape(-1, *q.shape[1:])
+        controls = np.repeat(self._controls[:, None], q[0].size, axis=1).reshape(len(self._controls), *q.shape[1:])
         return Point(self._t, np.concatenate([q, zeros]), zeros, multipliers, controls)
 
 

@@ -1,6 +1,7 @@
 """Equilibria against closed forms, and their stability against the theorems' textbook cases."""
 
 import copy
+import itertools
 import json
 import random
 from fractions import Fraction
@@ -650,6 +651,18 @@ def test_hinges_cannot_turn_their_axes_round():
         for k in (1, 3):  # rotations about the y axis alone
             assert each.coordinates[f"a{k}"] == pytest.approx(0, abs=1e-9)
             assert each.coordinates[f"b{k}"] == pytest.approx(0, abs=1e-9)
+
+
+def test_a_chain_of_four_masses_has_sixteen():
+    """Each link is up or down; starts far from the constraints led to 15 of them."""
+    chain = "".join(f"B{k} : particle(1, [x{k}, y{k}])$ J{k} : distance_joint(B{k - 1}, B{k}, 1)$" for k in range(1, 5))
+    start = ", ".join(f"x{k} = 0, y{k} = -{k}, dot(x{k}) = 0" for k in range(1, 5))
+    found = holonom.system(f"""load("holonom.mac")$ B0 : [0, 0]$ {chain}
+    system : holonomic_system(assembly(B1, J1, B2, J2, B3, J3, B4, J4, uniform_gravity(10, B1, B2, B3, B4)))$
+    s : holonomic_scene(system, initial_state = [{start}], time_span = [0, 1])$""").equilibria()
+    heights = {tuple(round(each.coordinates[f"y{k}"]) for k in range(1, 5)) for each in found}
+    assert heights == {tuple(np.cumsum(signs)) for signs in itertools.product((-1, 1), repeat=4)}
+    assert [each.stability for each in found].count(Stability.STABLE) == 1
 
 
 @pytest.mark.parametrize(("orientations", "count"), [("", 4), ("x", 2), ("x, y - z", 1), ("x, z - y, 1 + x^2", 1)])
