@@ -284,6 +284,10 @@ class ErrorKind(Enum):
         "equilibria need equations of motion that do not contain the time",
         "choose effects and constraints without it",
     )
+    ORIENTATION_CHANGES = (
+        "orientation {detail} is zero at a place where the constraints hold",
+        "remove it from orientations, or choose an expression whose sign no motion changes",
+    )
     NOT_A_CONTROL = ("unknown control {detail}", "name a control of the system")
     NO_SUCH_EQUILIBRIUM = ("no equilibrium {detail} was found", "use one that `holonom equilibria` lists")
     TWO_STATES = ("a time and an equilibrium exclude each other", "pass one of {--at} and {--equilibrium}")

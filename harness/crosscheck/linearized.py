@@ -38,6 +38,7 @@ LARGER = 100  # rounding errors, in terms of that effect
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 EXACT_DIGITS = 60  # in which exact values are put into the equations
 SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
+MOST_ORIENTATIONS = 2  # with which solutions are counted: each is an unknown more
 ENERGY = sp.Symbol("energy", real=True)
 
 
@@ -541,7 +542,9 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
     yield Condition("rational controls", wrong or (rational.keys() != controls.keys() and any(_of(found, "exact"))))
     equations_at_rest = equations.at_rest(controls | rational)
     yield from _conditions_on_orientations(equations, content, at_rest)
-    if content["count"] is not None:
+    if content["count"] is not None and len(equations.orientations) > MOST_ORIENTATIONS:
+        yield Condition("number of solutions", None)
+    elif content["count"] is not None:
         # a positive polynomial is the square of two numbers
         roots = [sp.Dummy(real=True) for _ in equations.orientations]
         signs = equations.orientation({**at_rest, **found[0]["coordinates"]}) if found else [1] * len(roots)

@@ -51,6 +51,7 @@ CHANGED = 0.1  # relative change of the stiffness at the size of a coordinate
 BATCH = 64  # coordinates along which it is looked for at once
 ITERATIONS = 60
 STEPS, CORRECTIONS = 16, 6  # along the constraints to a starting point, and onto them after each
+HALVINGS = 40  # of such a step, for the place where an orientation changes
 CONVERGED = 1e-11  # step of Newton's method in terms of the sizes
 BALANCED = 1e-9  # forces and residuals left, in terms of the largest that was met
 LONGEST_STEP = 2.0  # in terms of the sizes
@@ -204,7 +205,8 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time, a control has no value, or signs of the time or of velocities decide.
+        The equations contain the time, a control has no value, signs of the time or of velocities decide, or an
+        orientation is zero at a place where the constraints hold.
     """
     require_analytic(replace(problem, signs=tuple(s for s in problem.signs if s.by is not DependsOn.CONFIGURATION)))
     require_laws(problem)
@@ -278,6 +280,8 @@ class _Search:
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
         self._sizes = self._distances(nominal_of(problem).coordinates)
         self.orientation = np.nan_to_num(self._orientation(self._first)).astype(int)
+        for zero in np.flatnonzero(self.orientation == 0)[:1]:
+            raise HolonomError(ErrorKind.ORIENTATION_CHANGES, detail=str(zero + 1))
 
     def _distances(self, nominal: Vector) -> Vector:
         """Return a distance for each coordinate at which the stiffness changes.
@@ -373,25 +377,41 @@ class _Search:
         for _ in range(STEPS):
             ways = self._tangential(q, ways)
             ways *= lengths / or_one(np.linalg.norm(ways, axis=0))
-            moved = q + sizes * ways / STEPS
-            with np.errstate(all="ignore"):
-                for _ in range(CORRECTIONS):
-                    change = self._correction(moved)
-                    moved -= sizes * change
-                on_them = np.max(np.abs(change), axis=0, initial=0.0) <= SAME
-                q = np.where(on_them & self._is_oriented(moved), moved, q)
+            moved, on_them = self._onto_constraints(q + sizes * ways / STEPS)
+            oriented = self._is_oriented(moved)
+            for k in np.flatnonzero(on_them & ~oriented)[:1]:
+                self._require_lasting_orientation(q[:, [k]], moved[:, [k]])
+            q = np.where(on_them & oriented, moved, q)
         return q
+
+    def _onto_constraints(self, q: Matrix) -> tuple[Matrix, NDArray[np.bool_]]:
+        """Return k places, brought onto the constraints, and whether they are there."""
+        with np.errstate(all="ignore"):
+            for _ in range(CORRECTIONS):
+                J, residuals = self._scaled_constraints(q)
+                change = np.matvec(np.linalg.pinv(J, rcond=DEPENDENT), residuals).T
+                q = q - self._sizes[:, None] * change
+        return q, np.max(np.abs(change), axis=0, initial=0.0) <= SAME
+
+    def _require_lasting_orientation(self, one: Vector, other: Vector) -> None:
+        """Reject an orientation that changes between two places on the constraints.
+
+        The interval between them is halved. Where Newton's method leads elsewhere, nothing is known.
+        """
+        for _ in range(HALVINGS):
+            middle, on_them = self._onto_constraints((one + other) / 2)
+            if not on_them:
+                return
+            one, other = (middle, other) if self._is_oriented(middle) else (one, middle)
+        if np.max(np.abs(one - other) / self._sizes[:, None]) <= SAME:
+            changed = np.flatnonzero(self._orientation(other)[:, 0] != self.orientation)[0]
+            raise HolonomError(ErrorKind.ORIENTATION_CHANGES, detail=str(changed + 1))
 
     def _tangential(self, q: Matrix, ways: Matrix) -> Matrix:
         """Return the parts of k ways along the constraints, all in terms of sizes."""
         J, _ = self._scaled_constraints(q)
         across = np.matvec(np.linalg.pinv(J, rcond=DEPENDENT), np.matvec(J, ways.T))
         return ways - across.T
-
-    def _correction(self, q: Matrix) -> Matrix:
-        """Return the least ways of k places from the constraints, in terms of sizes."""
-        J, residuals = self._scaled_constraints(q)
-        return np.matvec(np.linalg.pinv(J, rcond=DEPENDENT), residuals).T
 
     def _scaled_constraints(self, q: Matrix) -> tuple[Matrix, Matrix]:
         """Return J, in the coordinates' sizes, and f at k places.
@@ -452,7 +472,7 @@ class _Search:
 
     def _is_oriented(self, q: Matrix) -> NDArray[np.bool_]:
         """Return True for places with the signs of the initial state."""
-        return np.all(self._orientation(q).T * self.orientation >= 0, axis=-1)
+        return np.all(self.orientation == self._orientation(q).T, axis=-1)
 
     def _orientation(self, q: Vector) -> Vector:
         """Return the signs that no motion changes, nan where one has no value."""

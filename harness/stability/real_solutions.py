@@ -196,7 +196,7 @@ def solve_exactly(
     turns : sequence of str
         Coordinates that whole turns do not change.
     orientation : sequence of int
-        Sign of each of the equations' orientations, 0 for any.
+        Sign of each of the equations' orientations.
 
     Returns
     -------
@@ -209,8 +209,7 @@ def solve_exactly(
     polynomials = [*rest, *constraints]
     if not polynomials or not _are_small(polynomials):
         return None
-    signed = [(g, sign) for g, sign in zip(orientations, orientation, strict=True) if sign]
-    if any(g is UNDEFINED for g, _ in signed):
+    if any(g is UNDEFINED for g in orientations):
         return None
     if others and not _replaceable(others, independent, constraints, gradients):
         return None
@@ -219,7 +218,8 @@ def solve_exactly(
     if standard is None:
         return None
     regular = _are_regular([gradients[beta] for beta in independent], constraints)
-    return RealSolutions(_count_with_signs(basis, standard, signed), regular, basis, standard)
+    count = _count_with_signs(basis, standard, list(zip(orientations, orientation, strict=True)))
+    return RealSolutions(count, regular, basis, standard)
 
 
 def rational_controls(equations: LinearEquations, t: str) -> dict[str, Fraction]:
