@@ -530,3 +530,14 @@ def test_the_way_back_to_constraints_left_a_state_on_the_wrong_side_of_a_root():
     reports = [end_of(problem, engine) for engine in (EngineName.TAYLOR, EngineName.RUNGE_KUTTA)]
     assert [len(report.switchings) for report in reports] == [7, 7]
     assert dict(reports[1].coordinates) == pytest.approx(dict(reports[0].coordinates), abs=1e-9)
+
+
+def test_a_bead_leaves_the_place_where_its_curve_bends():
+    """On y = x |x| from x = 0: without forces the length of the arc grows as the time."""
+    motion = holonom.system(
+        """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+          constraints = [y = x*abs(x)])$
+        s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 1])$"""
+    ).simulate(samples=5)
+    x = motion["x"]
+    assert np.arcsinh(2 * x) / 4 + x * np.sqrt(1 + 4 * x**2) / 2 == pytest.approx(np.linspace(0, 1, 5), abs=1e-12)
