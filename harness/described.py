@@ -77,11 +77,17 @@ class System:
     switches: tuple[str, ...] = entry(
         "Names in T, V and Q: 1 where a derivation has them among its effects, else 0.", ()
     )
+    orientation_trees: tuple[Tree, ...] = entry("Expressions whose signs no motion changes.", (), key="orientations")
 
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
         """The g constraints."""
         return tuple(map(expression, self.constraint_trees))
+
+    @cached_property
+    def orientations(self) -> "tuple[Expr, ...]":
+        """The expressions whose signs no motion changes."""
+        return tuple(map(expression, self.orientation_trees))
 
 
 class SystemTitle(NamedTuple):

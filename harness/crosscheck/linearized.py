@@ -20,7 +20,6 @@ import scipy.linalg
 import sympy as sp
 from mpmath import mp
 
-from ..described import expression
 from ..description import Description
 from ..simulation.matrices import Matrix, Vector
 from .described_motion import DescribedMotion
@@ -95,8 +94,7 @@ class DescribedEquations:
             for group, symbols in self._groups.items():
                 parts[f"{row}_by_{group}"] = [slope for each in expressions for slope in gradient(each, symbols)]
         self._shapes = {name: len(each) for name, each in parts.items()}
-        orientations = map(expression, description.content["system"].get("orientations", ()))
-        self.orientations = [exact(each).subs(values) for each in orientations]
+        self.orientations = [exact(each).subs(values) for each in description.system.orientations]
         self._at_rest = [each.subs(values) for row in ("equation", "constraint") for each in self._rows[row]]
         self._smooth = [_between_switchings(each.subs(values)) for part in parts.values() for each in part]
         self._steps = Steps(self._smooth)

@@ -54,6 +54,7 @@ def _entries_of_system(system: "System") -> Iterator[tuple[str, list[str]]]:
     yield "potential_energy", [f"{part.effect} = {scene_text(part.tree)}" for part in system.potential_energy]
     yield "forces", [f"{part.effect} = [{', '.join(map(scene_text, part.trees))}]" for part in system.forces]
     yield "constraints", _zeros(system.constraint_trees)
+    yield "orientations", [scene_text(tree) for tree in system.orientation_trees]
 
 
 def _entries_of_scene(scene: "DescribedScene") -> Iterator[tuple[str, list[str]]]:

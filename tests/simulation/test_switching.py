@@ -533,7 +533,7 @@ def test_the_way_back_to_constraints_left_a_state_on_the_wrong_side_of_a_root():
 
 
 def test_a_bead_leaves_the_place_where_its_curve_bends():
-    """On y = x |x| from x = 0: without forces the length of the arc grows as the time."""
+    """On y = x |x| from x = 0: without forces the length of the way is the time."""
     motion = holonom.system(
         """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
           constraints = [y = x*abs(x)])$
