@@ -717,9 +717,6 @@ JOINTS = {
     "generic_joint(P, Q, [], [1, 2])": 1,
     "generic_joint(P, Q, [1], [1, 3])": 1,
     "generic_joint(P, Q, [1, 2, 3], [1, 2, 3])": 2,
-    "spherical_joint(P, Q)": 0,
-    "universal_joint(P, Q)": 0,
-    "generic_joint(P, Q, [], [2, 3])": 0,
 }
 
 
