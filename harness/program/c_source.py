@@ -1,6 +1,7 @@
 """A motion program as C99 source, for one point and for many.
 
-The names of the program are replaced by v0, v1, .... Which input and output is which stands in the opening comment.
+Assigned names are replaced by v0, v1, ..., those of the inputs of one point by their places in the arrays, which the
+opening comment lists.
 Many points are taken several at a time, as lanes of one vector, where the compiler knows GNU C's vectors. Left to find
 the lanes itself in a loop over the points, GCC 12 finds none. With vectorization forced, it takes four times as long to
 compile.
@@ -214,13 +215,11 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     str
         One statement.
     """
-    names = dict(zip(program.inputs, map(infix.atom, inputs), strict=True))
-    if not target.reads_in_place:
-        used = names_used(program)
-        for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
-            names[name] = infix.atom(f"v{index}")
-            if name in used:
-                yield target.statement.format(name=f"v{index}", formula=value)
+    used, names = names_used(program), {}
+    for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
+        names[name] = infix.atom(value if target.reads_in_place else f"v{index}")
+        if name in used and not target.reads_in_place:
+            yield target.statement.format(name=f"v{index}", formula=value)
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
         names[name] = infix.atom(f"v{index}")

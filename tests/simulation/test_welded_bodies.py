@@ -36,10 +36,8 @@ def both(seed):
     def places(count):
         return [[Fraction(draw.choice((-3, -1, 1, 3)), 2) for _ in range(3)] for _ in range(count)]
 
-    masses, inertias = (
-        [draw.randint(1, 4) for _ in range(2)],
-        [[draw.randint(3, 5) for _ in range(3)] for _ in range(2)],
-    )
+    masses = [draw.randint(1, 4) for _ in range(2)]
+    inertias = [[draw.randint(3, 5) for _ in range(3)] for _ in range(2)]
     apart, joined, spring, damper, weld = places(5)
     shares = -Fraction(masses[1], sum(masses)), Fraction(masses[0], sum(masses))
     centres = [[share * x for x in apart] for share in shares]
@@ -53,11 +51,8 @@ def both(seed):
         ]
         for i in range(3)
     ]
-    axis, joint, owners = (
-        draw.choice(([0, 0, 1], [0, 3, 4])),
-        draw.choice(JOINTS),
-        [draw.randrange(2) for _ in range(3)],
-    )
+    axis, joint = draw.choice(([0, 0, 1], [0, 3, 4])), draw.choice(JOINTS)
+    owners = [draw.randrange(2) for _ in range(3)]
 
     def marker(part, place, *directions):
         if part is None:
