@@ -215,10 +215,10 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     str
         One statement.
     """
-    used, names = names_used(program), {}
+    copied, names = () if target.reads_in_place else names_used(program), {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
         names[name] = infix.atom(value if target.reads_in_place else f"v{index}")
-        if name in used and not target.reads_in_place:
+        if name in copied:
             yield target.statement.format(name=f"v{index}", formula=value)
     for index, (name, expression) in enumerate(program.assignments, start=len(program.inputs)):
         formula = target.arithmetic.value(expression, names)
