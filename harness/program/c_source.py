@@ -296,7 +296,7 @@ def _parts(items: Sequence) -> list[Sequence]:
 def _names_in_part(assignments: Sequence, outputs: Sequence) -> list[str]:
     """Return the names that assignments and outputs use, each once, in order."""
     expressions = [*(expression for _, expression in assignments), *(value for (_, value), _ in outputs)]
-    return list(dict.fromkeys(name for expression in expressions for name in sorted(names_in(expression))))
+    return sorted(set().union(*map(names_in, expressions)))
 
 
 def names_of(parameters: str) -> list[str]:
@@ -339,7 +339,7 @@ def _unused(parameters: Iterable[str], texts: Iterable[str]) -> Iterator[str]:
 
 
 def _indented(lines: Iterable[str]) -> str:
-    return indent("\n".join(lines), " " * 4).rstrip()
+    return ("    " + "\n".join(lines).replace("\n", "\n    ")).rstrip()
 
 
 def batch_support(many: SourceParts) -> str:
