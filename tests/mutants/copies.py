@@ -20,6 +20,7 @@ from sources import ROOT
 CHOSEN = ["-q", "-p", "no:cacheprovider", "-m", "not long or measured", "-n0"]
 Item, Result = TypeVar("Item"), TypeVar("Result")
 LONGEST = 3600  # seconds by the clock, for what waits without computing
+LARGEST = 8 << 30  # bytes that a process may write to
 
 
 class Copy:
@@ -61,7 +62,8 @@ class Copy:
             Its output.
         """
         named = [re.sub(r".*/(rtest_\w+)\.mac$", r"tests/test_rtests.py::test_rtest[\1]", each) for each in arguments]
-        command = ["prlimit", f"--cpu={seconds}", sys.executable, "-m", "pytest", *CHOSEN, *named]
+        limits = [f"--cpu={seconds}", f"--data={LARGEST}"]
+        command = ["prlimit", *limits, sys.executable, "-m", "pytest", *CHOSEN, *named]
         with psutil.Popen(command, cwd=self.directory, env=self.environment, stdout=-1, stderr=-1) as running:
             try:
                 printed, _ = running.communicate(timeout=LONGEST)
