@@ -15,16 +15,12 @@ from fractions import Fraction
 from functools import partial
 from math import e, pi
 from textwrap import indent
-from typing import TYPE_CHECKING
 
 from ..expression import infix
 from ..expression.infix import Formula
 from .arithmetic import ELEMENTARY, INFIX, Arithmetic
 from .motion_program import BINARY, Constant, Name, Operation, Program, names_in, names_used
 from .templates import filled, template
-
-if TYPE_CHECKING:
-    from .model import Model
 
 FUNCTIONS = ELEMENTARY | {Operation.ABS: "fabs"}
 
@@ -36,6 +32,7 @@ HELPERS = """\
 static inline double square(double x) { return x*x; }
 static inline double cube(double x) { return x*x*x; }
 static inline double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : x; }"""
+UNTIL_END = "until_end"  # of the time, if functions of it end: nan after that
 NOT_INLINE = """\
 #if !defined PIECE && defined __GNUC__
 #define PIECE static __attribute__((noinline))
@@ -59,6 +56,7 @@ class Target:
     statement: str
     arithmetic: Arithmetic[Formula]
     type: str = "double"
+    prefix: str = ""  # of the names of functions
     reads_in_place: bool = False  # formulas contain the inputs' expressions, rather than names of copies
 
 
@@ -85,7 +83,7 @@ def c_source(program: Program) -> str:
         "motion.c",
         title=comment_text(title_of(program)),
         table="\n".join(_table(program)),
-        helpers=HELPERS,
+        helpers=helpers_of(program),
         pieces=one.functions,
         one=indent(one.body, " " * 4),
         lanes=batch_support(many),
@@ -93,6 +91,23 @@ def c_source(program: Program) -> str:
         inputs=len(program.inputs),
         outputs=len(program.outputs),
     )
+
+
+def helpers_of(program: Program) -> str:
+    """Return the functions of C that statements for one point need.
+
+    Parameters
+    ----------
+    program : Program
+
+    Returns
+    -------
+    str
+        `HELPERS`, and the end of the functions of time.
+    """
+    if program.law_end is None:
+        return HELPERS
+    return f"{HELPERS}\nstatic inline double {UNTIL_END}(double t) {{ return t <= {program.last_time} ? t : NAN; }}"
 
 
 def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
@@ -130,21 +145,6 @@ def title_of(program: Program) -> str:
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
     end = "" if program.law_end is None else f", until t = {float(program.law_end):.10g}"
     return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}{end}"
-
-
-def title_of_model(model: "Model") -> str:
-    """Return a one-line description of a model.
-
-    Parameters
-    ----------
-    model : Model
-
-    Returns
-    -------
-    str
-        That of its motion, and the last time for which tables and special functions have values.
-    """
-    return title_of(replace(model.motion, law_end=model.law_end))
 
 
 def range_of(program: Program) -> str:
@@ -217,6 +217,8 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     """
     copied, names = () if target.reads_in_place else names_used(program), {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
+        if name == "t" and program.law_end is not None:
+            value = f"{target.prefix}{UNTIL_END}({value})"
         names[name] = infix.atom(value if target.reads_in_place else f"v{index}")
         if name in copied:
             yield target.statement.format(name=f"v{index}", formula=value)
@@ -355,7 +357,8 @@ def batch_support(many: SourceParts) -> str:
     str
         Definitions in C.
     """
-    arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()} | {"pow": 2}
+    arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()}
+    arities |= {"pow": 2, UNTIL_END: 1}
     text = many.functions + many.body
     called = {name: arity for name, arity in arities.items() if f"lanes_{name}(" in text}
     return (
@@ -401,4 +404,4 @@ def _arithmetic(prefix: str, number: Callable[[Fraction | float], Formula]) -> A
 
 
 ONE = Target("const double {name} = {formula};", _arithmetic("", _scalar), reads_in_place=True)
-MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes), "lanes")
+MANY = Target("const lanes {name} = {formula};", _arithmetic("lanes_", _lanes), "lanes", "lanes_")

@@ -5,8 +5,9 @@ program are defined in `maxima/program/model.mac`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from ..described import SystemTitle
 from ..documents import NAME, ask
@@ -15,10 +16,12 @@ from ..formats import Document, read
 from ..sandbox import Limits
 from ..schema import Names, NumberText
 from ..source import Source
-from ..structs import entry
+from ..structs import entry, structured
 from .motion_program import Program
 from .request import Request
 from .table import Table
+
+PROGRAMS = ("law", "motion", "constraints", "projection", "servo", "outputs")
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,26 @@ class Model:
     law_end: NumberText | None = entry(
         "The last time for which tables or special functions give values; null where nothing ends them.", None
     )
+
+    @staticmethod
+    def of_document(document: Mapping[str, Any]) -> "Model":
+        """Read the document of a model.
+
+        Parameters
+        ----------
+        document : mapping
+            Decoded JSON.
+
+        Returns
+        -------
+        Model
+            Each program with the end of the functions of time.
+        """
+        model = structured(Model, document)
+        programs = {name: getattr(model, name) for name in PROGRAMS}
+        return replace(
+            model, **{name: program and replace(program, law_end=model.law_end) for name, program in programs.items()}
+        )
 
     @property
     def histories(self) -> tuple[str, ...]:

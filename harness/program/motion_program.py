@@ -29,6 +29,7 @@ from .request import Solve
 
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
+ROUNDED = 1e-9  # of the time to which functions of time have values: how far behind it they have them, too
 SHOWN = 60  # characters of a rejected fragment that the error shows
 DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
@@ -104,6 +105,12 @@ class Program:
     )
 
     SHAPE: ClassVar = {"type": "object"}  # within other documents, where it is a document of its own
+
+    @property
+    def last_time(self) -> float:
+        """The time `law_end`, with room for rounding."""
+        end = float(self.law_end)
+        return end + ROUNDED * abs(end)
 
     @cached_property
     @computed("Number of operations of all assignments.", minimum=0)

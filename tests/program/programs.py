@@ -3,9 +3,11 @@
 import json
 import random
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
+import pytest
 from hypothesis import assume
 from hypothesis import strategies as st
 from reference import IllConditioned, reference
@@ -144,6 +146,12 @@ def chain(links: int) -> Program:
             let(f"a{axis}{k}", "Add", *terms)
             outputs[f"ddot({axis}{k})"] = f"a{axis}{k}"
     return program(inputs, assignments, outputs)
+
+
+ENDS = replace(program(["t", "a"], [("w", ["Multiply", "t", "a"])], {"out": "w"}), law_end="3.5")
+ENDS_POINTS = np.array([[-1.0, 3.5, np.nextafter(3.5, 4.0), 3.6, 100.0], [2.0] * 5])
+ENDS_VALUES = [-2.0, 7.0, pytest.approx(7.0), pytest.approx(np.nan, nan_ok=True), pytest.approx(np.nan, nan_ok=True)]
+"""A program whose functions of the time end, at points before and behind that, and its values."""
 
 
 def random_points(written, seed=0):

@@ -7,7 +7,17 @@ import subprocess
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
-from programs import PENDULUM, assume_well_conditioned, chain, program, random_points, random_programs
+from programs import (
+    ENDS,
+    ENDS_POINTS,
+    ENDS_VALUES,
+    PENDULUM,
+    assume_well_conditioned,
+    chain,
+    program,
+    random_points,
+    random_programs,
+)
 from reference import assert_within_bounds, reference
 
 from holonom.failures import ErrorKind, HolonomError
@@ -45,6 +55,11 @@ def test_programs_by_hand(written):
 def test_random_programs(written):
     assume_well_conditioned(written)
     assert_same_numbers(written)
+
+
+@by_node
+def test_there_is_no_value_where_functions_of_the_time_have_ended():
+    assert run(ENDS, ENDS_POINTS).ravel().tolist() == ENDS_VALUES
 
 
 @by_node

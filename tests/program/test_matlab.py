@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from exported import PROGRAMS, example, law_of, lift_by_a_table, model_of_program, random_arguments, values_of
 from hypothesis import HealthCheck, given, settings
-from programs import assume_well_conditioned, program, random_points, random_programs
+from programs import ENDS, ENDS_POINTS, ENDS_VALUES, assume_well_conditioned, program, random_points, random_programs
 from reference import assert_within_bounds, reference
 
 from holonom.failures import ErrorKind, HolonomError
@@ -36,6 +36,13 @@ def called(function, arguments):
     """Commands that print what a function returns, one line a point."""
     given = ", ".join(f"{name}(:, i)" if name != "t" else "t(i)" for name in arguments)
     return f"for i = 1:numel(t), printf('%.17g ', model.{function}({given})); printf('\\n'); end; "
+
+
+@by_octave
+def test_there_is_no_value_where_functions_of_the_time_have_ended(tmp_path):
+    t, *p = ENDS_POINTS
+    commands = "y = zeros(0, numel(t)); u = y; p = p(:)';  " + called("motion", "tyup")
+    assert np.ravel(run(model_of_program(ENDS), tmp_path, commands, t=t, p=p[0])).tolist() == ENDS_VALUES
 
 
 @by_octave

@@ -18,7 +18,17 @@ from exported import (
     values_of,
 )
 from hypothesis import HealthCheck, given, settings
-from programs import PENDULUM, assume_well_conditioned, chain, program, random_points, random_programs
+from programs import (
+    ENDS,
+    ENDS_POINTS,
+    ENDS_VALUES,
+    PENDULUM,
+    assume_well_conditioned,
+    chain,
+    program,
+    random_points,
+    random_programs,
+)
 from reference import assert_within_bounds, reference
 
 from holonom.failures import ErrorKind, HolonomError
@@ -222,6 +232,19 @@ def test_jax_with_single_precision_is_refused(crane, tmp_path):
     assert run.returncode == 1
     assert run.stderr.splitlines()[-1].startswith("TypeError: ")
     assert "jax_enable_x64" in run.stderr
+
+
+@pytest.mark.parametrize("package", MODULES)
+def test_there_is_no_value_where_functions_of_the_time_have_ended(package):
+    motion = module_of(model_of_program(ENDS), package).motion
+    found = [float(motion(t, np.empty(0), np.empty(0), np.array([a]))[0]) for t, a in ENDS_POINTS.T]
+    assert found == ENDS_VALUES
+
+
+def test_the_time_has_derivatives_until_functions_of_it_end():
+    motion = module_of(model_of_program(ENDS), "jax").motion
+    slope = jax.grad(lambda t: motion(t, np.empty(0), np.empty(0), np.array([2.0]))[0])
+    assert [slope(t) for t in (1.0, 3.5)] == [2.0, 2.0]
 
 
 def test_a_table_is_refused_to_casadi(lift):

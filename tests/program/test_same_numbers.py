@@ -5,8 +5,12 @@ import math
 import mpmath
 import numpy as np
 import pytest
+import sympy
 from hypothesis import HealthCheck, given, settings
 from programs import (
+    ENDS,
+    ENDS_POINTS,
+    ENDS_VALUES,
     PENDULUM,
     assume_well_conditioned,
     chain,
@@ -55,6 +59,16 @@ def assert_same_numbers(written):
 @pytest.mark.parametrize("written", [PENDULUM, chain(1), chain(2), chain(12)], ids=["pendulum", "1", "2", "12"])
 def test_programs_by_hand(written):
     assert_same_numbers(written)
+
+
+def test_there_is_no_value_where_functions_of_the_time_have_ended():
+    c, python = compile_c(ENDS), python_function(ENDS)
+    assert NumpyFunction(ENDS)(ENDS_POINTS)[0].tolist() == ENDS_VALUES
+    assert c(ENDS_POINTS)[0].tolist() == ENDS_VALUES
+    assert [c(point)[0] for point in ENDS_POINTS.T] == ENDS_VALUES
+    assert [python(point.tolist())[0] for point in ENDS_POINTS.T] == ENDS_VALUES
+    assert [float(python(list(map(mpmath.mpf, point)), mpmath)[0]) for point in ENDS_POINTS.T] == ENDS_VALUES
+    assert python(sympy.symbols("t a"), sympy) == [sympy.Mul(*sympy.symbols("t a"))]
 
 
 @settings(max_examples=8, suppress_health_check=list(HealthCheck))

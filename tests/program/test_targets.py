@@ -50,9 +50,9 @@ def test_names_are_themselves_in_python():
 
 
 @pytest.mark.parametrize("name", ["c", "matlab", "python_numpy", "python_jax"])
-def test_the_last_time_of_a_table_was_not_in_the_code_that_continues_it(name, tmp_path):
+def test_the_last_time_of_a_table_is_in_the_code_and_in_its_programs(name, tmp_path):
     model = lift_by_a_table(tmp_path / "lift.mac")
-    assert float(model.law_end) == POINTS[-1][0]
+    assert {float(each.law_end) for each in (model, model.law, model.motion)} == {POINTS[-1][0]}
     written = target(name).write_model(model, "lift")
     assert f"t = {POINTS[-1][0]:.10g}" in (written if isinstance(written, str) else written["lift.h"])
 

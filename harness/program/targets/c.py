@@ -13,17 +13,17 @@ from textwrap import fill, indent
 
 from ...failures import ErrorKind, HolonomError
 from ..c_source import (
-    HELPERS,
     MANY,
     ONE,
     SourceParts,
     batch_support,
     body_of,
     comment_text,
+    helpers_of,
     in_pieces,
     names_of,
     statements,
-    title_of_model,
+    title_of,
 )
 from ..identifiers import identifiers, require_identifier
 from ..model import Model
@@ -99,7 +99,7 @@ def explanation(model: Model) -> str:
     if model.parameters:
         inputs.append(f"p, the parameters {', '.join(model.parameters)}")
     given = "; ".join(inputs) or "none"
-    return f"{title_of_model(model)}. Inputs besides t, q and v: {given}. Other parameters have the scene's values."
+    return f"{title_of(model.motion)}. Inputs besides t, q and v: {given}. Other parameters have the scene's values."
 
 
 def _enumerations(model: Model, prefix: str) -> Iterator[str]:
@@ -149,7 +149,7 @@ def _source(model: Model, written: Mapping[str, str]) -> str:
         parts=max(parts) + 1,
         **{name: function.body for name, function in functions.items()},
         pieces="".join(function.functions for function in functions.values()),
-        helpers=HELPERS,
+        helpers=helpers_of(model.motion),
         names="\n".join(_names(model, written["name"])),
         start=body_of(_start(model), ["t", "q", "v"]),
         values=body_of((f"p[{i}] = {model.values.get(p, UNKNOWN)};" for i, p in enumerate(model.parameters)), ["p"]),

@@ -85,7 +85,8 @@ def _model_description(model: Model, name: str, token: str) -> ElementTree.Eleme
         variableNamingConvention="flat",
     )
     ElementTree.SubElement(root, "ModelExchange", modelIdentifier=name, canGetAndSetFMUState="true")
-    ElementTree.SubElement(root, "DefaultExperiment", startTime=model.start["t"])
+    end = {} if model.law_end is None else {"stopTime": model.law_end}
+    ElementTree.SubElement(root, "DefaultExperiment", startTime=model.start["t"], **end)
     variables = ElementTree.SubElement(root, "ModelVariables")
     for reference, attributes in enumerate(_variables(model)):
         ElementTree.SubElement(variables, "Float64", valueReference=str(reference), **attributes)

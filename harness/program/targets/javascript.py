@@ -3,13 +3,15 @@
 import json
 from collections.abc import Iterable
 
-from ..c_source import FUNCTIONS, ONE, Target, comment_text, statements, title_of
+from ..c_source import FUNCTIONS, ONE, UNTIL_END, Target, comment_text, statements, title_of
 from ..identifiers import require_identifier
+from ..model_functions import called
 from ..motion_program import Operation, Program
 from ..templates import filled
 
 SCRIPT = Target("const {name} = {formula};", ONE.arithmetic)
 NAMES_IN_MATH = {Operation.ABS: "abs: fabs"}  # where C and Math differ
+ENDED = "\n  const until_end = t => t <= {end} ? t : NaN;"
 MISSING_IN_MATH = {Operation.ERF}
 
 
@@ -35,10 +37,12 @@ def write(program: Program, name: str = "motion") -> str:
     require_identifier(name)
     reads = [f"values[{place}]" for place in range(len(program.inputs))]
     writes = [f"results[{place}] = {{value}};" for place in range(len(program.outputs))]
+    body = "\n".join(f"    {line}" for line in statements(program, SCRIPT, reads, writes))
     return filled(
         "motion.js",
         title=comment_text(title_of(program)),
         name=name,
+        ended=ENDED.format(end=program.last_time) if UNTIL_END in called(body) else "",
         functions=", ".join(
             NAMES_IN_MATH.get(operation, function)
             for operation, function in FUNCTIONS.items()
@@ -47,7 +51,7 @@ def write(program: Program, name: str = "motion") -> str:
         inputs=_listed(program.inputs),
         outputs=_listed(program.outputs),
         count=len(program.outputs),
-        body="\n".join(f"    {line}" for line in statements(program, SCRIPT, reads, writes)),
+        body=body,
     )
 
 

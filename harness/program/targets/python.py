@@ -16,6 +16,9 @@ from ..motion_program import Constant, Operation, Program
 from ..templates import filled
 
 DEFINED = {Operation.ABS: "abs", Operation.SIGN: "sign", Operation.POWER: "power"}
+ENDED = """
+    if ({time} > {end}) == True:  # functions of the time end; a symbol is not larger
+        {time} = functions.nan"""
 FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | DEFINED
 
 
@@ -38,6 +41,7 @@ def write(program: Program) -> str:
         inputs=_listed(program.inputs),
         outputs=_listed(tuple(program.outputs)),
         variables=" ".join(f"{variables[known].text}," for known in program.inputs),
+        ended="" if program.law_end is None else ENDED.format(time=variables["t"].text, end=program.last_time),
         body="\n".join(
             f"    {variables[known].text} = {PYTHON.value(expression, variables).text}"
             for known, expression in program.assignments

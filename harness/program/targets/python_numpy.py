@@ -11,10 +11,14 @@ def _array(values):
 
 
 """
+ENDED = """\
+def until_end(t):
+    return xp.where(t <= {end}, t, nan)"""
 NUMPY = Package(
     module="numpy",
     usage=USAGE,
     imports="import numpy as xp",
+    ended=ENDED,
     support=ARRAY + template("arrays.py.txt"),
     elsewhere={"erf": "scipy.special"},
 )
