@@ -5,10 +5,12 @@ to rounding there and be strong inside the step: a well of the potential that is
 not even change the energy. If the equations of motion contain such functions of the state, the dense output of each
 step is compared with them: in each part of it the velocities must change by the integral of the accelerations.
 
-If such a function acts for longer than 1/4096 of the time span, and changes the velocities by more than the tolerance
-lets expect, it is reported.
+A step is missed if such a function acts for longer than 1/4096 of the time span and changes the velocities by more than
+the tolerance allows. Engines on the motion program repeat it with half its length, and those of other engines are
+reported.
 """
 
+from collections.abc import Callable, Sequence
 from math import ceil
 from typing import Any
 
@@ -16,12 +18,18 @@ import numpy as np
 from numpy.polynomial.legendre import leggauss
 
 from ..program.precision import Precision
-from .engines.engine import Step
+from .engines.engine import Engine, Step
 from .evaluation import Numbers, as_floats
+from .matrices import Vector
+from .nominal import Nominal
 
 PARTS = 1024  # of the time span: longer steps are looked into
+ROUNDED = 4.0  # times the last bit of a time: how far off it may be
+SHORTEST = 1e-9  # of the time span: a step that is not shortened further
 AT_ONCE = 64  # parts of a step
 NODES, WEIGHTS = leggauss(10)
+
+States = Callable[[Numbers], Numbers]
 
 
 class DefectControl:
@@ -39,7 +47,7 @@ class DefectControl:
     """
 
     def __init__(self, span: Any, precision: Precision) -> None:
-        self._span = float(span)
+        self._span, self._rounding = float(span), ROUNDED * float(precision.rounding)
         self._nodes, self._weights = map(precision.numbers, (NODES, WEIGHTS))
         self.error = 0.0
 
@@ -51,15 +59,40 @@ class DefectControl:
         step : Step
             A step with its mode.
         """
-        length = step.end - step.start
-        parts = ceil(float(length) / self._span * PARTS)
-        if parts > 1:
-            for first in range(0, parts, AT_ONCE):
-                edges = step.start + length * np.arange(first, min(first + AT_ONCE, parts) + 1) / parts
-                self.error = float(np.maximum(self.error, self.between(edges, step)))  # nan stays
+        if self._parts(step) > 1:
+            found = self.errors([step], step.states, step.mode.engine, step.mode.matrices.nominal)
+            self.error = float(np.maximum(self.error, found[0]))  # nan stays
+
+    def errors(self, steps: Sequence[Step], states: States, engine: Engine, nominal: Nominal) -> Vector:
+        """Return the error of each step.
+
+        Parameters
+        ----------
+        steps : sequence of Step
+            At least one.
+        states : callable
+            As for `Step`, for times of all the steps.
+        engine : Engine
+            The engine that took them.
+        nominal : Nominal
+            Sizes of the motion's quantities.
+
+        Returns
+        -------
+        ndarray, shape (steps,)
+            As `error`.
+        """
+        parts = [self._parts(step) for step in steps]
+        edges = [s.start + (s.end - s.start) * np.arange(k + 1) / k for s, k in zip(steps, parts, strict=True)]
+        starts, ends = (np.concatenate([each[place] for each in edges]) for place in (np.s_[:-1], np.s_[1:]))
+        found = [
+            self._between(starts[first : first + AT_ONCE], ends[first : first + AT_ONCE], states, engine, nominal)
+            for first in range(0, len(starts), AT_ONCE)
+        ]
+        return np.maximum.reduceat(np.concatenate(found), np.cumsum([0, *parts[:-1]]))
 
     def between(self, edges: Numbers, step: Step) -> float:
-        """Return the largest error of the velocities in parts of a step.
+        """Return the largest error in parts of a step.
 
         Parameters
         ----------
@@ -73,13 +106,38 @@ class DefectControl:
         float
             As `error`.
         """
-        half = (edges[1:] - edges[:-1]) / 2
-        times = (edges[:-1, None] + half[:, None] * (1 + self._nodes)).ravel()
-        accelerations = step.mode.engine.solutions(times, step.states(times)).accelerations
+        mode = step.mode
+        found = self._between(edges[:-1], edges[1:], step.states, mode.engine, mode.matrices.nominal)
+        return float(np.max(found, initial=0.0))
+
+    def shortens(self, step: Step) -> bool:
+        """Return True if a step is long enough to be repeated with a shorter one.
+
+        Parameters
+        ----------
+        step : Step
+
+        Returns
+        -------
+        bool
+        """
+        return float(step.end - step.start) > SHORTEST * self._span
+
+    def _parts(self, step: Step) -> int:
+        """Return the number of parts of a step that are looked at."""
+        return max(1, ceil(float(step.end - step.start) / self._span * PARTS))
+
+    def _between(self, starts: Numbers, ends: Numbers, states: States, engine: Engine, nominal: Nominal) -> Vector:
+        """Return the error of the velocities from each start to its end, beyond what rounding of the times makes."""
+        half = (ends - starts) / 2
+        times = (starts[:, None] + half[:, None] * (1 + self._nodes)).ravel()
+        accelerations = engine.solutions(times, states(times)).accelerations
         n = len(accelerations)
         gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
-        velocities = step.states(edges)[n:]
-        sizes = step.mode.matrices.nominal.velocities[:, None]
-        error = as_floats(np.diff(velocities, axis=1) - gained) / sizes
-        largest = np.max(np.abs(as_floats(velocities) / sizes), initial=1.0)
-        return float(np.max(np.abs(error), initial=0.0) / largest)
+        first, last = states(starts)[n:], states(ends)[n:]
+        sizes = nominal.velocities[:, None]
+        error, velocities = np.abs(as_floats(last - first - gained)) / sizes, np.abs(as_floats(last)) / sizes
+        fastest = np.max(np.abs(as_floats(accelerations)).reshape(n, len(half), -1), axis=2, initial=0.0) / sizes
+        rounding = self._rounding * np.abs(as_floats(ends)) * fastest
+        largest = np.max(error - rounding, axis=0, initial=0.0)  # nan stays
+        return largest / np.max(velocities, axis=0, initial=1.0)

@@ -57,9 +57,17 @@ def simulated(holonom_here, write_scene):
     return simulate
 
 
+@pytest.mark.parametrize("engine", ["taylor", "runge-kutta"])
 @pytest.mark.parametrize("place", NARROW.values(), ids=NARROW)
-def test_a_narrow_place_was_passed_over_in_silence(simulated, place):
-    done = simulated(place)
+def test_steps_that_miss_a_narrow_place_are_repeated(simulated, place, engine):
+    done, short = simulated(place, "--engine", engine), simulated(place, "--max-step", "0.001")
+    assert (done.returncode, done.stderr) == (0, "")
+    found, expected = (json.loads(each.stdout) for each in (done, short))
+    assert found["coordinates"] == pytest.approx(expected["coordinates"], rel=1e-12)
+
+
+def test_a_narrow_place_was_passed_over_in_silence(simulated):
+    done = simulated(NARROW["a force that is no gradient, whose power was taken for none"], "--engine", "robust")
     found = json.loads(done.stdout)
     assert (done.returncode, found["trusted"]) == (1, False)
     assert "acceleration" in [violation["quantity"] for violation in found["violations"]]

@@ -30,7 +30,8 @@ struct follower {
 };
 
 long evaluations;
-static double tolerance, longest_step;
+double longest_step;
+static double tolerance;
 static double nominal_time, nominal[STATE];       /* sizes that the tolerance is relative to, too                   */
 static double estimated;                          /* error of the last step, one where it is all that is allowed  */
 static double reached = NAN, left[STATE], step;   /* where the last steps led, and how long the next would be */
@@ -200,10 +201,9 @@ static double go_on(double *t, double until, double *length, double *y, double (
     }
 }
 
-void begin(double relative_tolerance, double bound, double time, const double *sizes)
+void begin(double relative_tolerance, double time, const double *sizes)
 {
     tolerance = relative_tolerance;
-    longest_step = bound;
     nominal_time = time;
     memcpy(nominal, sizes, sizeof nominal);
 }

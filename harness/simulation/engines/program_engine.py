@@ -4,12 +4,14 @@ An integrator takes its steps in blocks, without Python in between. A block whos
 repeated step by step, with checks: steps shrink in proportion to the distance of a singularity. A singular
 configuration of the constraints is a singularity for the fixed pivots of the motion program, although the motion itself
 is regular there. After an obstruction the next one may be near, so the first steps are checked from the beginning.
+
+A step that misses a force of the state (`holonom.simulation.defect`) is undone, and repeated with half its length.
 """
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Protocol
 
 import numpy as np
@@ -18,9 +20,10 @@ from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import require_signs_known
 from ...program.motion_program import Operation, calls_of
-from ..accuracy_check import has_root_of
+from ..accuracy_check import FINEST, has_root_of, may_hide
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls
+from ..defect import DefectControl
 from ..evaluation import Evaluation, Numbers, as_floats, evaluation_once
 from ..hard_cases import Difficulty
 from ..inputs import Inputs
@@ -38,6 +41,7 @@ SHORTEST = 1e-10  # of the longest: a step that leads nowhere
 SHORTER = 1e-3  # of the longest: a step that makes the program's pivots suspect
 LOST, ACCURATE = 1e-11, 1e-12  # relative errors of its accelerations: a pivot vanishes; none does any more
 ROUNDED = 16.0  # times what the last bit of the state changes the accelerations by: rounding
+MISSED = 100.0  # times the tolerance: the defect of a step that misses a force
 VANISHING_PIVOT = translatable("a pivot of the motion program vanishes")
 NO_SLOPE = translatable("a force is not smooth there, so that the motion may not be unique")
 NEARS_SINGULAR = translatable("the configuration nears a singular one")
@@ -49,6 +53,7 @@ CHOICE = translatable(
 
 Taken = tuple[Any, Any, Any, int]
 """An outcome, the shortest and the longest of the steps, and their number."""
+NO_STEPS: Taken = (None, inf, 0.0, 0)
 
 
 class Integrator(Protocol):
@@ -111,6 +116,10 @@ class ProgramEngine:
         self._obstruction: HolonomError | None = None
         self._behind_obstruction = False
         self._evaluate: Evaluation | None = None
+        self._defect: DefectControl | None = None
+        if task.end is not None and may_hide(self._problem.matrices, ("t", *self._problem.parameters)):
+            self._defect = DefectControl(task.end - self.precision.number(self._problem.start["t"]), self.precision)
+        self._shorter: Any = None  # bound of the next step, where one before it missed a force
 
     @property
     def time(self) -> Any:
@@ -186,12 +195,44 @@ class ProgramEngine:
 
     def _take(self, until: Any, most: int, dense: bool) -> tuple[Taken, list[Step]]:
         """Take steps as the integrator does, each with its states if `dense` is true."""
+        if self._defect is not None:
+            return self._controlled(until, most)
         if dense:
             return self._with_states(until, most)
         return self._integrator.propagate_until(until, most, **self._bound)[:4], []
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         raise NotImplementedError
+
+    def _bound_steps(self, length: Any) -> None:
+        """Set the largest length of the next steps, None for that of the request."""
+        raise NotImplementedError
+
+    def _controlled(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
+        """Take steps as the integrator does, shorter ones where a step misses a force."""
+        kept, shortest, longest = [], inf, 0.0
+        while True:
+            begun, before, asked = self.time, self.state.copy(), most - len(kept) if self._shorter is None else 1
+            (outcome, *lengths, count), steps = self._with_states(until, asked)
+            missed = self._first_missed(steps)
+            if missed is not None:
+                self._go_back(begun, before)
+                self._shorter = (steps[missed].end - steps[missed].start) / 2
+                (_, *lengths, _), steps = self._with_states(until, missed) if missed else (NO_STEPS, [])
+            elif self._shorter is not None:
+                self._shorter = 2 * self._shorter if abs(self._integrator.last_h) >= self._shorter else None
+            self._bound_steps(self._shorter)
+            kept, shortest, longest = [*kept, *steps], min(shortest, lengths[0]), max(longest, lengths[1])
+            if missed is None and (count < asked or len(kept) == most or self.time == until):
+                return (outcome, shortest, longest, len(kept)), kept
+
+    def _first_missed(self, steps: Sequence[Step]) -> int | None:
+        """Return the number of the first step that misses a force, None without one."""
+        together = [(steps, steps[0].block.states)] if steps and steps[0].block else [([s], s.states) for s in steps]
+        errors = [self._defect.errors(*each, self, self._matrices.nominal) for each in together]
+        well = np.concatenate([[], *errors]) <= MISSED * max(self.tol, FINEST)
+        missed = np.flatnonzero(~well & [self._defect.shortens(step) for step in steps])
+        return int(missed[0]) if len(missed) else None
 
     def _block(self, until: Any, dense: bool) -> tuple[bool, list[Step]]:
         """Take a block of steps. Return True if it was the last, and its steps.

@@ -91,9 +91,9 @@ class RungeKuttaEngine(ProgramEngine):
             raise HolonomError(ErrorKind.TOLERANCE_OUT_OF_RANGE, detail=holds, option="--tol")
         begun, problem = time.perf_counter(), self._problem
         stabilization = request.stabilization if problem.multipliers else Stabilization.NONE
-        self._integrator = _DormandPrince(
-            problem, self.tol, stabilization, self.decay, self._matrices.nominal, request.max_step or inf
-        )
+        self._integrator = _DormandPrince(problem, self.tol, stabilization, self.decay, self._matrices.nominal)
+        self._longest_step = request.max_step or inf
+        self._bound_steps(None)
         self.state = self._integrator.state
         self.compile_seconds = time.perf_counter() - begun
 
@@ -124,6 +124,9 @@ class RungeKuttaEngine(ProgramEngine):
     def _set_values(self) -> None:
         self._integrator.open_values[:] = self.inputs.open_values(self._integrator.time, "right")
 
+    def _bound_steps(self, length: Any) -> None:
+        self._integrator.longest_step.value = min(self._longest_step, length or inf)
+
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         return self._integrator.with_states(until, most)
 
@@ -152,8 +155,6 @@ class _DormandPrince(ctypes.Structure):
         gamma.
     nominal : Nominal
         Sizes of the motion's quantities.
-    max_step : float
-        Largest step.
 
     Attributes
     ----------
@@ -168,6 +169,8 @@ class _DormandPrince(ctypes.Structure):
         watch on the way. Returns their number, 0 where the motion is left as it was.
     open_values : sequence of float
         Of `MotionProblem.open_inputs`, in place.
+    longest_step : c_double
+        Bound of a step.
     usual : float
         Length of the longest step that `quiet_steps` took since the motion began anew.
 
@@ -192,7 +195,6 @@ class _DormandPrince(ctypes.Structure):
         stabilization: Stabilization,
         decay: float,
         nominal: Nominal,
-        max_step: float,
     ) -> None:
         begin, self.state = start_of(problem)
         super().__init__(begin, self.state.ctypes.data)
@@ -208,8 +210,9 @@ class _DormandPrince(ctypes.Structure):
         self.quiet_steps = partial(library.advance_quietly, self._address)
         self._evaluations = ctypes.c_long.in_dll(library, "evaluations")
         self.open_values = (ctypes.c_double * len(problem.open_inputs)).in_dll(library, "open_values")
-        library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
-        library.begin(tol, max_step, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data)
+        self.longest_step = ctypes.c_double.in_dll(library, "longest_step")
+        library.begin.argtypes = (ctypes.c_double, ctypes.c_double, ctypes.c_void_p)
+        library.begin(tol, nominal.time, np.ascontiguousarray(nominal.state).ctypes.data)
         self._closing = weakref.finalize(self, unload, library)
         self._closing.atexit = False
 

@@ -67,7 +67,8 @@ class TaylorEngine(ProgramEngine):
         if self._finer < 1:
             self._tolerance["tol"] = self._tolerance.get("tol", precision.rounding) * number(repr(self._finer))
         self._chosen = request.compact is not None
-        self._bound = {} if request.max_step is None else {"max_delta_t": number(repr(request.max_step))}
+        self._longest_step = None if request.max_step is None else number(repr(request.max_step))
+        self._bound_steps(None)
         self._program = computing(problem.motion, problem.accelerations)
         code = Code.COMPACT if request.compact else Code.UNROLLED
         if not self._chosen:
@@ -122,6 +123,10 @@ class TaylorEngine(ProgramEngine):
         if outcome != import_heyoka().taylor_outcome.step_limit:
             return None
         return ceil(trial * float(until - begun) / covered)
+
+    def _bound_steps(self, length: Any) -> None:
+        bounds = [bound for bound in (length, self._longest_step) if bound is not None]
+        self._bound = {"max_delta_t": min(bounds)} if bounds else {}
 
     def _with_states(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps with states between: a few one by one, or many at once.
