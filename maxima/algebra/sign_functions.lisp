@@ -1,7 +1,7 @@
 ;;; Functions that are analytic while certain signs stay the same, written with these signs
 ;;;
-;;;     |g| = s g             max(a, b) = (a + b + s (a - b))/2        hstep(g) = (1 + s)/2
-;;;     signum(g) = s         min(a, b) = (a + b - s (a - b))/2        unit_step(g) = (s + s^2)/2
+;;;     |g| = s g             max(a, b) = (1 + s)/2 a + (1 - s)/2 b    hstep(g) = (1 + s)/2
+;;;     signum(g) = s         min(a, b) = (1 - s)/2 a + (1 + s)/2 b    unit_step(g) = (s + s^2)/2
 ;;;
 ;;;     if g > 0 then X else Y = w X + (1 - w) Y,  w = (s + s^2)/2;  if g >= 0:  w = 1 + (s - s^2)/2
 ;;;
@@ -67,7 +67,8 @@
 
 (defun extremum (side arguments)
   (reduce #'(lambda (a b)
-              (let ((difference (sub a b))) (div (add a b (mul side (absolute-value difference))) 2)))
+              (let ((sign (mul side (sign-or-zero (sub a b)))))
+                (add (mul (weight-of-sign sign) a) (mul (weight-of-sign (neg sign)) b))))
           arguments))
 
 (defun absolute-value (g) (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))

@@ -133,6 +133,25 @@ def test_python_source_refused_the_sign_of_a_number_of_numpy():
     assert [python_function(written)([np.float64(a)]) for a in (-2.5, 0, 3)] == [[-1], [0], [1]]
 
 
+@pytest.mark.parametrize(
+    ("force", "state", "acceleration"),
+    [
+        ("min(10, x^(-12))", [0.03, 0], 10),
+        ("-min(x, 10^17)", [1 / 3, 0], -1 / 3),
+        ("max(10^20, y)", [1, -3], 1e20),
+        ("-max(0, x*y)^(3/2)", [-0.3398979866895011, 0.6802731130757278], 0),
+        ("min(x*y, 0)^(1/3)", [0.6174414858368353, 0.8261558909994002], 0),
+    ],
+)
+def test_what_is_less_or_greater_lost_its_digits_to_the_other(force, state, acceleration):
+    scene = holonom.system(f"""system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      forces = [{force}, 0])$ scene : holonomic_scene(system, initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$""")
+    written = scene.program().program
+    point = np.array([0.0, *state, 0.0, 0.0])
+    for function in (NumpyFunction(written), compile_c(written), heyoka_function(written), python_function(written)):
+        assert function(point)[0] == pytest.approx(acceleration, rel=1e-15)
+
+
 @pytest.mark.parametrize(("x", "acceleration"), [(-1, 3), (4, -4)])
 def test_a_branch_that_is_not_taken_has_a_value(x, acceleration):
     """sqrt(-1) times zero is no number."""
