@@ -145,7 +145,8 @@ def test_python_source_refused_the_sign_of_a_number_of_numpy():
 )
 def test_what_is_less_or_greater_lost_its_digits_to_the_other(force, state, acceleration):
     scene = holonom.system(f"""system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
-      forces = [{force}, 0])$ scene : holonomic_scene(system, initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$""")
+      forces = [{force}, 0])$
+      scene : holonomic_scene(system, initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$""")
     written = scene.program().program
     point = np.array([0.0, *state, 0.0, 0.0])
     for function in (NumpyFunction(written), compile_c(written), heyoka_function(written), python_function(written)):
