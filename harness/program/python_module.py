@@ -22,7 +22,7 @@ LAWLESS = " A control has no law. Therefore the module has no functions law and 
 RHS = '''\
 def rhs(t, y, p):
     """Return the time derivatives of y under the law."""
-    points, rows = _points(t, y, p), motion(t, y, {u}, p)
+    points, rows = _points(t, y=y, p=p), motion(t, y, {u}, p)
     return _stacked([*points[{n} + 1 : 2*{n} + 1], *(rows[place] for place in range({n}))], points)'''
 
 
@@ -111,11 +111,12 @@ def _functions(model: Model, functions: Iterable[ModelFunction]) -> Iterator[str
 
 def _function(function: ModelFunction, pieces: str) -> str:
     arguments = ", ".join(function.arguments)
+    named = ", ".join(each if each == "t" else f"{each}={each}" for each in function.arguments)
     inputs = [f"points[{place}]" for place in range(len(function.program.inputs))]
     assignments, rows = body(function, PYTHON, inputs)
     lines = [
         f'"""Return OUTPUTS["{function.name}"]."""',
-        f"points = _points({arguments})",
+        f"points = _points({named})",
         *filter(None, [pieces]),
         *assignments,
         f"return _stacked([{', '.join(rows)}], points)",

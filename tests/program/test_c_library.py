@@ -24,7 +24,7 @@ from holonom.program.targets import c
 from holonom.sandbox import Limits
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-STRICT = ["-Wall", "-Wextra", "-pedantic", "-O2"]
+STRICT = ["-Wall", "-Wextra", "-Wconversion", "-pedantic", "-O2"]
 DOUBLES = np.ctypeslib.ndpointer(dtype=float, flags="C_CONTIGUOUS")
 
 

@@ -234,6 +234,16 @@ def test_jax_with_single_precision_is_refused(crane, tmp_path):
     assert "jax_enable_x64" in run.stderr
 
 
+@pytest.mark.parametrize("package", ["numpy", "jax"])
+@pytest.mark.parametrize("vector", ["y", "u", "p"])
+@pytest.mark.parametrize("more", [-1, 1])
+def test_a_vector_of_another_length_moved_those_behind_it(crane, package, vector, more):
+    arguments = dict(zip("tyup", random_arguments(crane), strict=True))
+    arguments[vector] = np.ones((len(arguments[vector]) + more, 7))
+    with pytest.raises(ValueError, match=vector):
+        module_of(crane, package).motion(**arguments)
+
+
 @pytest.mark.parametrize("package", MODULES)
 def test_there_is_no_value_where_functions_of_the_time_have_ended(package):
     motion = module_of(model_of_program(ENDS), package).motion

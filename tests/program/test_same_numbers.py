@@ -131,6 +131,7 @@ def test_a_singular_pivot_gives_no_finite_number():
 def test_python_source_refused_the_sign_of_a_number_of_numpy():
     written = program(["a"], [("w", ["Sign", "a"])], {"out": "w"})
     assert [python_function(written)([np.float64(a)]) for a in (-2.5, 0, 3)] == [[-1], [0], [1]]
+    assert math.isnan(python_function(written)([math.nan])[0])
 
 
 @pytest.mark.parametrize(

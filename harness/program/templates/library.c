@@ -42,12 +42,12 @@ void @{name}_motion_batch(size_t points, const double *t, const double *q, const
     }
     for (; i < points; i++) {
         double qi[@{n} + 1], vi[@{n} + 1], ui[3*@{m} + 1], pi[@{k} + 1], ai[@{n} + 1], li[@{g} + 1];
-        for (int j = 0; j < @{n}; j++) qi[j] = q[j*points + i], vi[j] = v[j*points + i];
-        for (int j = 0; j < 3*@{m}; j++) ui[j] = u[j*points + i];
-        for (int j = 0; j < @{k}; j++) pi[j] = p[j*points + i];
+        for (int j = 0; j < @{n}; j++) qi[j] = q[(size_t)j*points + i], vi[j] = v[(size_t)j*points + i];
+        for (int j = 0; j < 3*@{m}; j++) ui[j] = u[(size_t)j*points + i];
+        for (int j = 0; j < @{k}; j++) pi[j] = p[(size_t)j*points + i];
         @{name}_motion(t[i], qi, vi, ui, pi, ai, li);
-        for (int j = 0; j < @{n}; j++) a[j*points + i] = ai[j];
-        for (int j = 0; j < @{g}; j++) lambda[j*points + i] = li[j];
+        for (int j = 0; j < @{n}; j++) a[(size_t)j*points + i] = ai[j];
+        for (int j = 0; j < @{g}; j++) lambda[(size_t)j*points + i] = li[j];
     }
 }
 
