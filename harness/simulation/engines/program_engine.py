@@ -210,9 +210,9 @@ class ProgramEngine:
 
     def _controlled(self, until: Any, most: int) -> tuple[Taken, list[Step]]:
         """Take steps as the integrator does, shorter ones where a step misses a force."""
-        kept, shortest, longest = [], inf, 0.0
+        accepted, shortest, longest = [], inf, 0.0
         while True:
-            begun, before, asked = self.time, self.state.copy(), most - len(kept) if self._shorter is None else 1
+            begun, before, asked = self.time, self.state.copy(), most - len(accepted) if self._shorter is None else 1
             (outcome, *lengths, count), steps = self._with_states(until, asked)
             missed = self._first_missed(steps)
             if missed is not None:
@@ -222,9 +222,9 @@ class ProgramEngine:
             elif self._shorter is not None:
                 self._shorter = 2 * self._shorter if abs(self._integrator.last_h) >= self._shorter else None
             self._bound_steps(self._shorter)
-            kept, shortest, longest = [*kept, *steps], min(shortest, lengths[0]), max(longest, lengths[1])
-            if missed is None and (count < asked or len(kept) == most or self.time == until):
-                return (outcome, shortest, longest, len(kept)), kept
+            accepted, shortest, longest = [*accepted, *steps], min(shortest, lengths[0]), max(longest, lengths[1])
+            if missed is None and (count < asked or len(accepted) == most or self.time == until):
+                return (outcome, shortest, longest, len(accepted)), accepted
 
     def _first_missed(self, steps: Sequence[Step]) -> int | None:
         """Return the number of the first step that misses a force, None without one."""
