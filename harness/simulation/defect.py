@@ -128,7 +128,10 @@ class DefectControl:
         return max(1, ceil(float(step.end - step.start) / self._span * PARTS))
 
     def _between(self, starts: Numbers, ends: Numbers, states: States, engine: Engine, nominal: Nominal) -> Vector:
-        """Return the error of the velocities from each start to its end, beyond what rounding of the times makes."""
+        """Return the error of the velocities in each part.
+
+        What rounding of the times makes does not count.
+        """
         half = (ends - starts) / 2
         times = (starts[:, None] + half[:, None] * (1 + self._nodes)).ravel()
         accelerations = engine.solutions(times, states(times)).accelerations
