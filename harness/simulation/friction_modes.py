@@ -135,6 +135,20 @@ class FrictionModes:
         """Number of guards."""
         return len(self._branches) * (4 if self._dependent else len(self._signs))
 
+    def known(self, inputs: Numbers) -> bool:
+        """Return True if the drives have values at a state.
+
+        Parameters
+        ----------
+        inputs : ndarray, shape (inputs,)
+            As for `agreeing`.
+
+        Returns
+        -------
+        bool
+        """
+        return bool(np.isfinite(self._terms(inputs[:, None]).drives).all())
+
     def agreeing(self, inputs: Numbers) -> list[Solution]:
         """Return the modes that agree with their solutions at a state.
 

@@ -483,7 +483,10 @@ class HybridMotion:
 
         It is the given one if no acceleration decides, as of a coordinate that a control holds at rest.
         """
-        found = modes.agreeing(self._inputs(t, state))
+        inputs = self._inputs(t, state)
+        if not modes.known(inputs):
+            inputs = self._inputs(*self._shortly_behind(t, state))
+        found = modes.agreeing(inputs)
         if not found and modes.rough:
             names = self._of(modes.rough)
             self._reject(t, translatable("%(sign)s slides under several forces that contain multipliers", sign=names))
@@ -496,7 +499,7 @@ class HybridMotion:
             patterns = [each.pattern for each in found]
             return min(patterns, key=lambda each: (self._with_roots(each) is not None, each != pattern))
         names, one = self._of(zeros), bool(found) and all(found[0].accelerates_as(each) for each in found)
-        shared = modes.shared(found, self._inputs(t, state)) if one else None
+        shared = modes.shared(found, inputs) if one else None
         if shared:
             self.undetermined |= dict.fromkeys(differing_outputs(self.problem, found, self._precision, t, state))
             return shared
@@ -505,6 +508,14 @@ class HybridMotion:
         if self.problem.reacting:
             self._reject(t, NOT_UNIQUE)
         self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=names))
+
+    def _shortly_behind(self, t: Any, state: Numbers) -> tuple[Any, Numbers]:
+        """Return a state by which roots have a value whose argument is zero here.
+
+        Rounding has put the argument on the side that the motion leaves.
+        """
+        near, n = self._precision.number(repr(ROOT_PASSED * self._span)), len(state) // 2
+        return t + near, np.concatenate([state[:n] + near * state[n:], state[n:]])
 
     def _of(self, names: Sequence[str]) -> str:
         return ", ".join(self._signs[name].of for name in names)
