@@ -20,6 +20,7 @@ from ..program.motion_program import Call, Operation, Program, calls_in, names_i
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
+LARGEST = 0.01  # error of a motion, however many its steps
 ERROR_TEXT = {
     "energy": "the energy",
     "acceleration": "a force that acts within a step",
@@ -101,9 +102,10 @@ def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
     Returns
     -------
     float or ndarray, shape (k,)
-        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps.
+        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps; at most `LARGEST`, or ten times a
+        larger tolerance.
     """
-    return MARGIN * max(tol, FINEST) * np.maximum(1, steps)
+    return np.minimum(MARGIN * max(tol, FINEST) * np.maximum(1, steps), max(LARGEST, 10 * tol))
 
 
 def relative_energy_error(

@@ -40,6 +40,7 @@
       e
       (let ((operator (caar e)))
         (cond ((eq operator 'mcond) (conditional-with-signs (cdr e)))
+              ((root-of-excess-p e) (conditional-with-signs (excess-in-parts (third (second e)) (third e))))
               ((root-of-size-p e) (power (size-with-sign-met (with-signs (second (second e)))) (third e)))
               ((eq operator 'mabs) (absolute-value (with-signs (second e))))
               ((eq operator '%signum) (sign-or-zero (with-signs (second e))))
@@ -56,9 +57,16 @@
 
 ;; A root of s g would have no value where a step ends behind the zero of g.
 (defun size-with-sign-met (g) (sign-of-function g) (take '(mabs) g))
-(defun root-of-size-p (e)
+(defun root-of-size-p (e) (root-of-p '(mabs) e))
+(defun root-of-p (operators e)
   (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))) (consp (second e))
-       (eq (caar (second e)) 'mabs)))
+       (member (caar (second e)) operators)))
+
+;; The root of max(0, g) has no slope where g is negative, as that of a product of g and 0.
+(defun root-of-excess-p (e)
+  (and (root-of-p '($max %max) e) (plusp ($num (third e))) (= (length (second e)) 3) (eql (second (second e)) 0)))
+
+(defun excess-in-parts (g exponent) (list (take '(mgreaterp) g 0) (power g exponent) t 0))
 
 ;; To Maxima it is the real root, of g < 0 as well: signum(g) |g|^(p/q) if p is odd, |g|^(p/q) if p is even.
 (defun odd-root-p (e)

@@ -31,6 +31,7 @@ from programs import (
 )
 from reference import assert_within_bounds, reference
 
+import holonom
 from holonom.failures import ErrorKind, HolonomError
 from holonom.program.differentiation import differentiated
 from holonom.program.forms import MotionProgram
@@ -185,6 +186,17 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$"""),
     y = casadi.SX.sym("y", 2)
     by_casadi = casadi.Function("by", [y], [casadi.jacobian(module_of(model, "casadi").motion(0, y, u, u), y)])
     assert_close(by_casadi([x, 1.0]).full(), expected)
+
+
+@pytest.mark.parametrize("v", [-0.3, 0.5])
+def test_the_derivative_of_a_clipped_root_was_no_number(v):
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [-5*max(0, dot(x))^(1/2)])$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$""")
+    module: dict = {}
+    exec(scene.program().to_python("jax"), module)
+    found = jax.jacfwd(module["motion"], 1)(0.0, np.array([1.0, v]), np.zeros(0), np.zeros(0))
+    assert_close(np.asarray(found), [[0.0, -2.5 / v**0.5 if v > 0 else 0.0]])
 
 
 @pytest.mark.parametrize("package", ["numpy", "jax"])
