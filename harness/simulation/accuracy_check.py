@@ -102,8 +102,8 @@ def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
     Returns
     -------
     float or ndarray, shape (k,)
-        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps; at most `LARGEST`, or ten times a
-        larger tolerance.
+        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps. At most `LARGEST`, or ten times
+        a larger tolerance.
     """
     return np.minimum(MARGIN * max(tol, FINEST) * np.maximum(1, steps), max(LARGEST, 10 * tol))
 
