@@ -129,15 +129,19 @@ def system(text: str, scene: str | None = None, limits: Limits | None = None, **
     file = directory.path / "system.mac"
     library = "" if LOADS_THE_LIBRARY.search(text) else 'load("holonom.mac")$ '
     file.write_text(library + text, encoding="utf-8")
-    opened = _opened(file, scene, settings, limits)
-    opened._directory = directory  # it is removed with the last scene that reads the file
-    return opened
+    return _opened(file, scene, settings, limits, directory)
 
 
-def _opened(file: Path, scene: str | None, settings: Mapping[str, Number], limits: Limits | None) -> "Scene":
+def _opened(
+    file: Path,
+    scene: str | None,
+    settings: Mapping[str, Number],
+    limits: Limits | None,
+    directory: OwnDirectory | None = None,
+) -> "Scene":
     limits = limits or Limits()
     warn_unsandboxed(limits)
-    source = Source(file.absolute(), limits)  # the working directory may change
+    source = Source(file.absolute(), limits, directory)  # the working directory may change
     return Scene(file, scene, _settings(settings), limits, source)
 
 
@@ -233,7 +237,6 @@ class Scene:
     ) -> None:
         self.file, self._settings, self.limits = file, dict(settings), limits
         self._name = name
-        self._directory: OwnDirectory | None = None
         self._source = source or Source(file, limits)
         self._derived = Derivations(self._source)
 
@@ -275,7 +278,7 @@ class Scene:
         """
         chosen = self._settings | _settings({**(settings or {}), **more})
         other = Scene(self.file, self._name, chosen, self.limits, self._source)
-        other._directory, other._derived = self._directory, self._derived
+        other._derived = self._derived
         return other
 
     # ---- the derivation ----
@@ -636,9 +639,7 @@ class Scene:
         from .stability.start import started_at_equilibrium
 
         source = started_at_equilibrium(self._source, self.equilibria(), name)
-        other = Scene(self.file, self._name, self._settings, self.limits, source)
-        other._directory = self._directory
-        return other
+        return Scene(self.file, self._name, self._settings, self.limits, source)
 
     @takes_options(*options_of(EquilibriaRequest))
     def branches(

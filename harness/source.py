@@ -14,6 +14,7 @@ from .failures import ErrorKind, HolonomError, HolonomWarning
 from .formats import Document
 from .maxima import DEFAULT_LIMITS, NO_SETTINGS, read_maxima_text, run_scene
 from .sandbox import Limits
+from .temporary import OwnDirectory
 
 
 class Source:
@@ -25,10 +26,12 @@ class Source:
         A scene file in Maxima's language, or a description in JSON.
     limits : Limits
         Limits of each run of Maxima.
+    directory : OwnDirectory or None
+        The private directory of the file. It exists as long as the source does.
     """
 
-    def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS) -> None:
-        self.file, self.limits = file, limits
+    def __init__(self, file: Path, limits: Limits = DEFAULT_LIMITS, directory: OwnDirectory | None = None) -> None:
+        self.file, self.limits, self.directory = file, limits, directory
         self._described: dict[tuple[tuple[str, str], ...], Description] = {}
         self.waiting: list[tuple[object, Mapping[str, str]]] = []  # questions of `documents.ask_later`
         self.answers: dict[object, object] = {}  # to these questions

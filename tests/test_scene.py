@@ -319,6 +319,11 @@ def test_the_text_of_a_system_is_removed_with_its_last_scene():
     assert not file.exists()
 
 
+def test_a_program_reads_the_text_of_its_system_without_the_scene():
+    program = holonom.system(OSCILLATOR).program()
+    assert program.inputs[0] == "t"
+
+
 def test_a_copy_of_a_scene_reads_the_text_of_its_system_too():
     scene = holonom.system(OSCILLATOR)
     other = copy.deepcopy(scene)
