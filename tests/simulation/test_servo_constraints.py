@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import sympy as sp
 from refusing import failing, refused
+from scipy.special import j0
 
 import holonom
 from holonom.failures import ErrorKind, HolonomError
@@ -326,6 +327,16 @@ def test_a_path_by_if_was_refused_for_a_function_that_no_program_has():
     s = np.maximum(np.asarray(motion.times) - 1, 0)
     assert motion["u"] == pytest.approx(6 / 5 * 120 * s + 5 * 20 * s**3, abs=1e-12)
     assert motion["x"] == pytest.approx(s**5 + 3 / 5 * 20 * s**3, abs=1e-13)
+
+
+def test_a_special_function_in_forces_beside_a_path_was_refused():
+    """Truth: the control is -sin(t) less Bessel's function."""
+    motion = holonom.system("""
+system : holonomic_system(coordinates = [x], controls = [F], kinetic_energy = dot(x)^2/2,
+  forces = [F + bessel_j(0, t)])$
+drive : holonomic_scene(system, servo_constraints = [x = sin(t)], initial_state = [],
+  initial_guess = [x = 0, dot(x) = 1], time_span = [0, 5], observe = [trajectory, controls])$""").simulate(samples=11)
+    assert motion["F"] == pytest.approx(-np.sin(motion.times) - j0(motion.times), abs=1e-14)
 
 
 def test_a_path_that_asks_for_third_rates_of_a_law_was_followed_without_them():
