@@ -342,6 +342,6 @@ def _is_regular(matrix: Numbers) -> bool:
     """Return True if equations have one solution, in any units."""
     if not np.isfinite(matrix).all():
         return False
-    rows, columns = np.abs(matrix).max(axis=1, initial=0.0), np.abs(matrix).max(axis=0, initial=0.0)
-    scaled = matrix / np.sqrt(np.outer(rows, columns))
+    scaled = matrix / np.abs(matrix).max(axis=1, initial=0.0, keepdims=True)
+    scaled /= np.abs(scaled).max(axis=0, initial=0.0)
     return bool(np.isfinite(scaled).all() and (not len(scaled) or np.linalg.cond(scaled) < SINGULAR))

@@ -4,7 +4,7 @@ from typing import Any
 
 from ..language import Message, translatable
 
-OVERFLOW = translatable("numbers overflow")
+OVERFLOW = translatable("forces or masses have no finite value")
 SHORT_STEPS = translatable("steps become too short")
 
 

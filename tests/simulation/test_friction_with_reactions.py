@@ -411,3 +411,27 @@ scene : holonomic_scene(system, initial_state = [{start}],
     accelerations = np.diff(forces)
     for i, acceleration in zip(blocks, accelerations, strict=True):
         assert motion[f"x{i}"][-1] == pytest.approx(10 * i / 2 + acceleration / 8, rel=1e-13)
+
+
+TIPPED_ROD = """
+rod : planar_body({m}, {m}*{l}^2/10, [x, y], phi)$
+tip : marker(rod, [0, -{l}/2])$
+system : holonomic_system(assembly(rod, constraints = [position(tip)[2]], uniform_gravity(10*{l}/{t}^2, rod),
+  applied_force([-1/5*abs(lambda1)*signum(velocity(tip)[1]), 0], tip),
+  applied_torque(-{m}*{l}^2/{t}^2/5*signum(dot(phi)), rod)))$
+fall : holonomic_scene(system, time_span = [0, 2*{t}], initial_state = [phi = 1/10, x = 0, dot(phi) = 0, dot(x) = 0],
+  initial_guess = [y = {l}/2, dot(y) = 0])$
+"""
+
+
+@pytest.mark.parametrize(
+    ("length", "mass", "time"), [("1", "1", "(10^-6)"), ("(10^9)", "(10^-12)", "(10^-6)"), ("1000", "1000", "(10^-9)")]
+)
+def test_moments_of_friction_in_other_units_were_a_paradox(length, mass, time):
+    def fallen(**units):
+        return holonom.system(TIPPED_ROD.format(**units)).simulate(samples=2).report.coordinates
+
+    found, expected = fallen(l=length, m=mass, t=time), fallen(l="1", m="1", t="1")
+    unit = {"1": 1.0, "1000": 1e3, "(10^9)": 1e9}[length]
+    assert found["phi"] == pytest.approx(expected["phi"], rel=1e-12)
+    assert [found[name] / unit for name in "xy"] == pytest.approx([expected[name] for name in "xy"], rel=1e-11)
