@@ -182,7 +182,7 @@ def _quality(report: "Report") -> Iterator[str]:
     yield from notes(report)
     yield from _switchings(report.switchings)
     for condition in report.unreleased:
-        yield f"{condition} does not cross zero: the joint is not released."
+        yield f"{condition} does not cross zero after the initial time: the joint is not released."
     if report.relative_degrees:
         degrees = ", ".join(map(str, report.relative_degrees))
         yield f"The outputs of the servo-constraints have the relative degrees {degrees}."
