@@ -111,7 +111,7 @@ class RungeKuttaEngine(ProgramEngine):
 
     def _blocks(self, until: float, dense: bool) -> Iterator[Step]:
         """Take blocks, in one call of C to a near time without an obstruction before it."""
-        if not dense:
+        if not dense and self._defect is None:
             integrator = self._integrator
             self._begin()
             if self._obstruction is None:
