@@ -65,7 +65,7 @@ def program(
     json, python and javascript contain the values of the scene. Controls are inputs, constant ones without derivatives.
 
     c is a C11 library: accelerations and multipliers, the control law, residuals and Jacobian of the constraints, and
-    projection. fmu is the same for FMI 3 model exchange; its parameters need values. matlab, and python with --module,
+    projection. fmu is the same for FMI 3 model exchange. Its parameters need values. matlab, and python with --module,
     are functions of arrays. Inputs are the controls, the parameters without a value, and those of --parameters.
     """
     from ..files import require_own_files, write_files, write_whole
