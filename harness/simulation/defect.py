@@ -15,7 +15,7 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
+from numpy.polynomial import Legendre
 
 from ..program.precision import Precision
 from .engines.engine import Engine, Step
@@ -27,9 +27,22 @@ PARTS = 1024  # of the time span: longer steps are looked into
 ROUNDED = 4.0  # times the last bit of a time: how far off it may be
 SHORTEST = 1e-9  # of the time span: a step that is not shortened further
 AT_ONCE = 64  # parts of a step
-NODES, WEIGHTS = leggauss(10)
+ORDER = 12  # nodes of a part, of Lobatto's quadrature: a step may end just behind the place where a force begins
 
 States = Callable[[Numbers], Numbers]
+
+
+def _lobatto(order: int) -> tuple[Vector, Vector]:
+    """Return the nodes from -1 to 1, and the weights.
+
+    They are exact up to degree 2 order - 3 (Abramowitz & Stegun, 25.4.32).
+    """
+    last = Legendre.basis(order - 1)
+    nodes = np.concatenate([[-1.0], last.deriv().roots().real, [1.0]])
+    return nodes, 2 / (order * (order - 1) * last(nodes) ** 2)
+
+
+NODES, WEIGHTS = _lobatto(ORDER)
 
 
 class DefectControl:

@@ -31,6 +31,7 @@ from ..program.friction import (
     unknown_amounts,
 )
 from ..program.motion_problem import DependsOn, MotionProblem
+from ..program.motion_program import Program
 from ..program.precision import Precision
 from .evaluation import Numbers, as_floats, evaluation, zeros
 from .matrices import Vector
@@ -116,19 +117,26 @@ class FrictionModes:
         self._places, self._pattern, self._precision = problem.places, pattern, precision
         self._zeros = [name for name in self._places if name in zeros]
         self.rough = [name for name in self._zeros if not slides(problem, name)]
-        self._unknown = unknown_amounts(problem, set(zeros) - set(self.rough))
-        free = [name for name in self._zeros if name not in self.rough]
-        self._signs = [dict(zip(free, each, strict=True)) for each in product((1, -1, SLIDING), repeat=len(free))]
         self._dependent = dependent
         self._reactions = [sign.name for sign in problem.signs if sign.by is DependsOn.REACTION]
-        tried = [*self.rough, *self._reactions]
+        terms = self._affine_terms(problem)
+        if terms is None:
+            self.rough = list(self._zeros)
+            terms = self._affine_terms(problem)
+        self._outputs = list(terms.outputs)
+        inputs = *(name for name in terms.inputs if name not in self._tried), *self._tried
+        self._function = evaluation(replace(terms, inputs=inputs), precision)
+
+    def _affine_terms(self, problem: MotionProblem) -> Program | None:
+        """Return the program of the terms, and set the modes to try."""
+        self._unknown = unknown_amounts(problem, set(self._zeros) - set(self.rough))
+        free = [name for name in self._zeros if name not in self.rough]
+        self._signs = [dict(zip(free, each, strict=True)) for each in product((1, -1, SLIDING), repeat=len(free))]
+        tried = self._tried = [*self.rough, *self._reactions]
         self._branches = [dict(zip(tried, each, strict=True)) for each in product((1, -1), repeat=len(tried))]
         self._sides = {name: np.array([float(branch[name]) for branch in self._branches]) for name in tried}
-        known = {name: sign for name, sign in pattern.items() if name not in tried}
-        terms = affine_terms(problem, known, self._zeros, self._unknown)
-        self._outputs = list(terms.outputs)
-        inputs = *(name for name in terms.inputs if name not in tried), *tried
-        self._function = evaluation(replace(terms, inputs=inputs), precision)
+        known = {name: sign for name, sign in self._pattern.items() if name not in tried}
+        return affine_terms(problem, known, self._zeros, self._unknown)
 
     @property
     def count(self) -> int:

@@ -489,7 +489,7 @@ class HybridMotion:
         found = modes.agreeing(inputs)
         if not found and modes.rough:
             names = self._of(modes.rough)
-            self._reject(t, translatable("%(sign)s slides under several forces that contain multipliers", sign=names))
+            self._reject(t, translatable("%(sign)s slides, and forces are not linear in its friction", sign=names))
         if found and all(found[0].is_shared_as(each) for each in found):
             if len(found) > 1:
                 self._left_open = differing_outputs(self.problem, found, self._precision, t, state)

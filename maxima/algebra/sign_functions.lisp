@@ -18,8 +18,6 @@
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
 (defvar *written-openly* nil "Whether signs stay signum(g).")
 (defvar *at-zeros* nil "Whether signs are 0, too, so that their squares are not 1.")
-(defvar *sizes-stay* nil "Whether |g| stays, except that of a g with *linear-names*.")
-(defvar *linear-names* nil)
 
 (defun $written_openly (expression) (let ((*written-openly* t)) (with-signs expression)))
 
@@ -30,10 +28,6 @@
           (cons '(mlist) (mapcar #'(lambda (met) (list '(mlist) (car met) (cdr met)))
                                  (reverse *signs-met*)))
           written)))
-
-(defun $written_with_sizes (expressions prefix names)
-  "As written_with_signs the expressions, with the same symbols; but |g| stays where g is free of the names."
-  (let ((*sizes-stay* t) (*linear-names* (cdr names))) (third ($written_with_signs expressions prefix))))
 
 (defun with-signs (e)
   (if (or (atom e) (member 'array (car e)))
@@ -85,10 +79,7 @@
                 (add (mul (weight-of-sign sign) a) (mul (weight-of-sign (neg sign)) b))))
           arguments))
 
-(defun absolute-value (g)
-  (cond (*written-openly* (take '(mabs) g))
-        ((and *sizes-stay* (every #'(lambda (name) (free g name)) *linear-names*)) (size-with-sign-met g))
-        (t (mul g (sign-of-function g)))))
+(defun absolute-value (g) (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
 ;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called

@@ -16,6 +16,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from refusing import failing
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import beta
 
@@ -541,3 +542,16 @@ def test_a_bead_leaves_the_place_where_its_curve_bends():
     ).simulate(samples=5)
     x = motion["x"]
     assert np.arcsinh(2 * x) / 4 + x * np.sqrt(1 + 4 * x**2) / 2 == pytest.approx(np.linspace(0, 1, 5), abs=1e-12)
+
+
+def test_a_root_of_the_greater_of_place_and_velocity_was_an_internal_error():
+    def slope(t, state):
+        return state[1], -state[0] - max(0, *state) ** 1.5 / 2
+
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+  forces = [-x - max(0, max(x, dot(x)))^(3/2)/2])$
+scene : holonomic_scene(system, initial_state = [x = 2, dot(x) = 0], time_span = [0, 6])$""")
+    found = scene.simulate(samples=2).report
+    truth = solve_ivp(slope, (0, 6), (2, 0), method="DOP853", rtol=1e-11, atol=1e-13, max_step=0.01).y[0, -1]
+    assert found.coordinates["x"] == pytest.approx(truth, rel=1e-8)

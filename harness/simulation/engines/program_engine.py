@@ -228,9 +228,11 @@ class ProgramEngine:
 
     def _first_missed(self, steps: Sequence[Step]) -> int | None:
         """Return the number of the first step that misses a force, None without one."""
-        together = [(steps, steps[0].block.states)] if steps and steps[0].block else [([s], s.states) for s in steps]
+        if not steps:
+            return None
+        together = [(steps, steps[0].block.states)] if steps[0].block else [([step], step.states) for step in steps]
         errors = [self._defect.errors(*each, self, self._matrices.nominal) for each in together]
-        well = np.concatenate([[], *errors]) <= MISSED * max(self.tol, FINEST)
+        well = np.concatenate(errors) <= MISSED * max(self.tol, FINEST)
         missed = np.flatnonzero(~well & [self._defect.shortens(step) for step in steps])
         return int(missed[0]) if len(missed) else None
 
