@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from numpy.polynomial import Legendre
+from numpy.polynomial.legendre import leggauss
 
 from ..program.precision import Precision
 from .engines.engine import Engine, Step
@@ -27,9 +28,9 @@ PARTS = 1024  # of the time span: longer steps are looked into
 ROUNDED = 4.0  # times the last bit of a time: how far off it may be
 SHORTEST = 1e-9  # of the time span: a step that is not shortened further
 AT_ONCE = 64  # parts of a step
-ORDER = 12  # nodes of a part, of Lobatto's quadrature: a step may end just behind the place where a force begins
 
 States = Callable[[Numbers], Numbers]
+Rule = tuple[Numbers, Numbers]  # nodes from -1 to 1, and weights
 
 
 def _lobatto(order: int) -> tuple[Vector, Vector]:
@@ -42,7 +43,8 @@ def _lobatto(order: int) -> tuple[Vector, Vector]:
     return nodes, 2 / (order * (order - 1) * last(nodes) ** 2)
 
 
-NODES, WEIGHTS = _lobatto(ORDER)
+OPEN = leggauss(10)
+CLOSED = _lobatto(12)  # with both ends: a step may end just behind the place where a force begins
 
 
 class DefectControl:
@@ -61,7 +63,7 @@ class DefectControl:
 
     def __init__(self, span: Any, precision: Precision) -> None:
         self._span, self._rounding = float(span), ROUNDED * float(precision.rounding)
-        self._nodes, self._weights = map(precision.numbers, (NODES, WEIGHTS))
+        self._open, self._closed = (tuple(map(precision.numbers, rule)) for rule in (OPEN, CLOSED))
         self.error = 0.0
 
     def take(self, step: Step) -> None:
@@ -72,9 +74,10 @@ class DefectControl:
         step : Step
             A step with its mode.
         """
-        if self._parts(step) > 1:
-            found = self.errors([step], step.states, step.mode.engine, step.mode.matrices.nominal)
-            self.error = float(np.maximum(self.error, found[0]))  # nan stays
+        parts = self._parts(step)
+        if parts > 1:
+            edges = step.start + (step.end - step.start) * np.arange(parts + 1) / parts
+            self.error = float(np.maximum(self.error, self.between(edges, step)))  # nan stays
 
     def errors(self, steps: Sequence[Step], states: States, engine: Engine, nominal: Nominal) -> Vector:
         """Return the error of each step.
@@ -99,8 +102,8 @@ class DefectControl:
         edges = [s.start + (s.end - s.start) * np.arange(k + 1) / k for s, k in zip(steps, parts, strict=True)]
         starts, ends = (np.concatenate([each[place] for each in edges]) for place in (np.s_[:-1], np.s_[1:]))
         found = [
-            self._between(starts[first : first + AT_ONCE], ends[first : first + AT_ONCE], states, engine, nominal)
-            for first in range(0, len(starts), AT_ONCE)
+            self._between(self._closed, starts[some], ends[some], states, engine, nominal)
+            for some in _slices(len(starts))
         ]
         return np.maximum.reduceat(np.concatenate(found), np.cumsum([0, *parts[:-1]]))
 
@@ -120,8 +123,13 @@ class DefectControl:
             As `error`.
         """
         mode = step.mode
-        found = self._between(edges[:-1], edges[1:], step.states, mode.engine, mode.matrices.nominal)
-        return float(np.max(found, initial=0.0))
+        found = [
+            self._between(
+                self._open, edges[:-1][some], edges[1:][some], step.states, mode.engine, mode.matrices.nominal
+            )
+            for some in _slices(len(edges) - 1)
+        ]
+        return float(np.max(np.concatenate(found), initial=0.0))
 
     def shortens(self, step: Step) -> bool:
         """Return True if a step is long enough to be repeated with a shorter one.
@@ -140,16 +148,19 @@ class DefectControl:
         """Return the number of parts of a step that are looked at."""
         return max(1, ceil(float(step.end - step.start) / self._span * PARTS))
 
-    def _between(self, starts: Numbers, ends: Numbers, states: States, engine: Engine, nominal: Nominal) -> Vector:
+    def _between(
+        self, rule: Rule, starts: Numbers, ends: Numbers, states: States, engine: Engine, nominal: Nominal
+    ) -> Vector:
         """Return the error of the velocities in each part.
 
         What rounding of the times makes does not count.
         """
         half = (ends - starts) / 2
-        times = (starts[:, None] + half[:, None] * (1 + self._nodes)).ravel()
+        nodes, weights = rule
+        times = (starts[:, None] + half[:, None] * (1 + nodes)).ravel()
         accelerations = engine.solutions(times, states(times)).accelerations
         n = len(accelerations)
-        gained = half * (accelerations.reshape(n, len(half), -1) * self._weights).sum(axis=2)
+        gained = half * (accelerations.reshape(n, len(half), -1) * weights).sum(axis=2)
         first, last = states(starts)[n:], states(ends)[n:]
         sizes = nominal.velocities[:, None]
         error, velocities = np.abs(as_floats(last - first - gained)) / sizes, np.abs(as_floats(last)) / sizes
@@ -157,3 +168,8 @@ class DefectControl:
         rounding = self._rounding * np.abs(as_floats(ends)) * fastest
         largest = np.max(error - rounding, axis=0, initial=0.0)  # nan stays
         return largest / np.max(velocities, axis=0, initial=1.0)
+
+
+def _slices(count: int) -> list[slice]:
+    """Return slices of so many parts, `AT_ONCE` in each."""
+    return [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
