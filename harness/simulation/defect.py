@@ -171,5 +171,5 @@ class DefectControl:
 
 
 def _slices(count: int) -> list[slice]:
-    """Return slices of so many parts, `AT_ONCE` in each."""
+    """Return the slices of a number of parts, `AT_ONCE` in each."""
     return [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
