@@ -21,7 +21,7 @@ from ..schema import FloatText, Names, NumberText
 from ..source import Source, source_of
 from ..structs import entry, group, structured
 from .drawing import Drawing
-from .motion_program import Program
+from .motion_program import ROUNDED, Program
 from .request import Request
 from .table import Table
 
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from ..description import Description
 
 Built = TypeVar("Built")
-ROUNDED = 1e-9  # of the time to the end of a law: how far behind it a time counts as its end
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 
 

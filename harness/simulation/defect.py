@@ -24,7 +24,7 @@ from .evaluation import Numbers, as_floats
 from .matrices import Vector
 from .nominal import Nominal
 
-PARTS = 1024  # of the time span: longer steps are looked into
+PARTS = 1024  # of the time span: longer steps are looked at part by part
 ROUNDED = 4.0  # times the last bit of a time: how far off it may be
 SHORTEST = 1e-9  # of the time span: a step that is not shortened further
 AT_ONCE = 64  # parts of a step
@@ -74,9 +74,8 @@ class DefectControl:
         step : Step
             A step with its mode.
         """
-        parts = self._parts(step)
-        if parts > 1:
-            edges = step.start + (step.end - step.start) * np.arange(parts + 1) / parts
+        edges = self._edges(step)
+        if len(edges) > 2:
             self.error = float(np.maximum(self.error, self.between(edges, step)))  # nan stays
 
     def errors(self, steps: Sequence[Step], states: States, engine: Engine, nominal: Nominal) -> Vector:
@@ -98,14 +97,10 @@ class DefectControl:
         ndarray, shape (steps,)
             As `error`.
         """
-        parts = [self._parts(step) for step in steps]
-        edges = [s.start + (s.end - s.start) * np.arange(k + 1) / k for s, k in zip(steps, parts, strict=True)]
+        edges = [self._edges(step) for step in steps]
         starts, ends = (np.concatenate([each[place] for each in edges]) for place in (np.s_[:-1], np.s_[1:]))
-        found = [
-            self._between(self._closed, starts[some], ends[some], states, engine, nominal)
-            for some in _slices(len(starts))
-        ]
-        return np.maximum.reduceat(np.concatenate(found), np.cumsum([0, *parts[:-1]]))
+        found = self._of_parts(self._closed, starts, ends, states, engine, nominal)
+        return np.maximum.reduceat(found, np.cumsum([0, *(len(each) - 1 for each in edges[:-1])]))
 
     def between(self, edges: Numbers, step: Step) -> float:
         """Return the largest error in parts of a step.
@@ -123,13 +118,8 @@ class DefectControl:
             As `error`.
         """
         mode = step.mode
-        found = [
-            self._between(
-                self._open, edges[:-1][some], edges[1:][some], step.states, mode.engine, mode.matrices.nominal
-            )
-            for some in _slices(len(edges) - 1)
-        ]
-        return float(np.max(np.concatenate(found), initial=0.0))
+        found = self._of_parts(self._open, edges[:-1], edges[1:], step.states, mode.engine, mode.matrices.nominal)
+        return float(np.max(found, initial=0.0))
 
     def shortens(self, step: Step) -> bool:
         """Return True if a step is long enough to be repeated with a shorter one.
@@ -144,11 +134,18 @@ class DefectControl:
         """
         return float(step.end - step.start) > SHORTEST * self._span
 
-    def _parts(self, step: Step) -> int:
-        """Return the number of parts of a step that are looked at."""
-        return max(1, ceil(float(step.end - step.start) / self._span * PARTS))
+    def _edges(self, step: Step) -> Numbers:
+        """Return the times between which the parts of a step are."""
+        length = step.end - step.start
+        parts = max(1, ceil(float(length) / self._span * PARTS))
+        return step.start + length * np.arange(parts + 1) / parts
 
-    def _between(
+    def _of_parts(self, rule: Rule, starts: Numbers, ends: Numbers, *given: Any) -> Vector:
+        """Return the error of the velocities in each part, some parts at once."""
+        pieces = [slice(first, first + AT_ONCE) for first in range(0, len(starts), AT_ONCE)]
+        return np.concatenate([self._of_some(rule, starts[piece], ends[piece], *given) for piece in pieces])
+
+    def _of_some(
         self, rule: Rule, starts: Numbers, ends: Numbers, states: States, engine: Engine, nominal: Nominal
     ) -> Vector:
         """Return the error of the velocities in each part.
@@ -168,8 +165,3 @@ class DefectControl:
         rounding = self._rounding * np.abs(as_floats(ends)) * fastest
         largest = np.max(error - rounding, axis=0, initial=0.0)  # nan stays
         return largest / np.max(velocities, axis=0, initial=1.0)
-
-
-def _slices(count: int) -> list[slice]:
-    """Return the slices of a number of parts, `AT_ONCE` in each."""
-    return [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
