@@ -11,12 +11,14 @@ beginning of a step.
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from fractions import Fraction
+from sys import float_info
 from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..program.motion_program import Call, Operation, Program, calls_in, names_in
+from ..program.precision import Precision
 from .matrices import Matrices, Vector
 
 MARGIN = 1e4
@@ -26,7 +28,8 @@ ERROR_TEXT = {
     "acceleration": "a force that acts within a step",
     "multipliers": "a multiplier",
 }
-FINEST = 1e-15  # relative error of a step, however fine its tolerance: residuals are computed in double precision
+FINEST = 1e-15  # relative error of a step in double precision, however fine its tolerance
+OF_CONSTRAINTS = ("position", "velocity")  # errors that are computed in double precision
 
 
 class AccuracyViolation(NamedTuple):
@@ -48,7 +51,9 @@ class AccuracyViolation(NamedTuple):
         )
 
 
-def violations(errors: Mapping[str, float], tol: float, steps: int) -> Iterator[AccuracyViolation]:
+def violations(
+    errors: Mapping[str, float], tol: float, steps: int, least: float = FINEST
+) -> Iterator[AccuracyViolation]:
     """Yield the quantities whose relative error is too large for the tolerance.
 
     Parameters
@@ -59,13 +64,15 @@ def violations(errors: Mapping[str, float], tol: float, steps: int) -> Iterator[
         Tolerance of a step.
     steps : int
         Number of steps taken.
+    least : float, optional
+        Relative error of a step that rounding may make. That of residuals is `FINEST`.
 
     Yields
     ------
     AccuracyViolation
     """
-    most = float(expected(tol, steps))
     for quantity, value in errors.items():
+        most = float(expected(tol, steps, FINEST if quantity in OF_CONSTRAINTS else least))
         if not value <= most:
             yield AccuracyViolation(quantity, value, most)
 
@@ -89,7 +96,23 @@ def trusted(errors: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) 
     return np.logical_and.reduce([values <= expected(tol, steps) for values in errors.values()])
 
 
-def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
+def finest(precision: Precision) -> float:
+    """Return the relative error of a step that rounding alone may make.
+
+    Parameters
+    ----------
+    precision : Precision
+        Numbers of the motion.
+
+    Returns
+    -------
+    float
+        At least the smallest normal float: smaller errors are not told apart.
+    """
+    return max(FINEST * float(precision.rounding) / float_info.epsilon, float_info.min)
+
+
+def expected(tol: float, steps: int | NDArray[np.int64], least: float = FINEST) -> float | Vector:
     """Return the largest relative error to expect from a tolerance after some steps.
 
     Parameters
@@ -98,14 +121,16 @@ def expected(tol: float, steps: int | NDArray[np.int64]) -> float | Vector:
         Tolerance of a step.
     steps : int or ndarray of int, shape (k,)
         Number of steps taken.
+    least : float, optional
+        Relative error of a step that rounding may make.
 
     Returns
     -------
     float or ndarray, shape (k,)
-        ``MARGIN`` times the tolerance, at least `FINEST`, times the number of steps. At most `LARGEST`, or ten times
+        ``MARGIN`` times the tolerance, or the least error, times the number of steps. At most `LARGEST`, or ten times
         a larger tolerance.
     """
-    return np.minimum(MARGIN * max(tol, FINEST) * np.maximum(1, steps), max(LARGEST, 10 * tol))
+    return np.minimum(MARGIN * max(tol, least) * np.maximum(1, steps), max(LARGEST, 10 * tol))
 
 
 def relative_energy_error(

@@ -15,14 +15,13 @@ from math import ceil
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import Legendre
-from numpy.polynomial.legendre import leggauss
 
 from ..program.precision import Precision
 from .engines.engine import Engine, Step
 from .evaluation import Numbers, as_floats
 from .matrices import Vector
 from .nominal import Nominal
+from .quadrature import Rule, gauss_legendre, gauss_lobatto, points_for
 
 PARTS = 1024  # of the time span: longer steps are looked at part by part
 ROUNDED = 4.0  # times the last bit of a time: how far off it may be
@@ -30,21 +29,6 @@ SHORTEST = 1e-9  # of the time span: a step that is not shortened further
 AT_ONCE = 64  # parts of a step
 
 States = Callable[[Numbers], Numbers]
-Rule = tuple[Numbers, Numbers]  # nodes from -1 to 1, and weights
-
-
-def _lobatto(order: int) -> tuple[Vector, Vector]:
-    """Return the nodes from -1 to 1, and the weights.
-
-    They are exact up to degree 2 order - 3 (Abramowitz & Stegun, 25.4.32).
-    """
-    last = Legendre.basis(order - 1)
-    nodes = np.concatenate([[-1.0], last.deriv().roots().real, [1.0]])
-    return nodes, 2 / (order * (order - 1) * last(nodes) ** 2)
-
-
-OPEN = leggauss(10)
-CLOSED = _lobatto(12)  # with both ends: a step may end just behind the place where a force begins
 
 
 class DefectControl:
@@ -63,7 +47,10 @@ class DefectControl:
 
     def __init__(self, span: Any, precision: Precision) -> None:
         self._span, self._rounding = float(span), ROUNDED * float(precision.rounding)
-        self._open, self._closed = (tuple(map(precision.numbers, rule)) for rule in (OPEN, CLOSED))
+        points = points_for(precision)
+        self._open = gauss_legendre(points, precision)
+        # with both ends: a step may end just behind the place where a force begins
+        self._closed = gauss_lobatto(points + 2, precision)
         self.error = 0.0
 
     def take(self, step: Step) -> None:

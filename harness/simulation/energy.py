@@ -6,12 +6,11 @@ integral of the power is an error of the motion (Goldstein, Poole & Safko, secti
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.polynomial.legendre import leggauss
 
 from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_used
@@ -21,9 +20,8 @@ from .accuracy_check import may_hide
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once, zeros
 from .inputs import Inputs
+from .quadrature import gauss_legendre, points_for
 
-POINTS_PER_DIGIT = 10 / 17  # of the quadrature: exact over a step to about the order of the Taylor engine
-MORE_DIGITS = 10  # in which they are found
 LAST = 2  # coefficients of the power as a function of time that show whether it is resolved
 MOST_PARTS = 1024  # of an interval
 PROBES = (0.3127, -0.7411, 1.2713)  # seeds of states that show whether power vanishes
@@ -71,12 +69,12 @@ class EnergyBalance:
     @property
     def inner_states(self) -> int:
         """Number of states that `works` needs within an interval."""
-        return 0 if self.conservative else round(POINTS_PER_DIGIT * self._precision.digits)
+        return 0 if self.conservative else points_for(self._precision)
 
     @cached_property
     def _quadrature(self) -> tuple[Numbers, Numbers]:
         """Points in [-1, 1] and weights."""
-        return _gauss_legendre(self.inner_states, self._precision)
+        return gauss_legendre(self.inner_states, self._precision)
 
     def energy(self, times: Numbers, states: Numbers) -> Numbers:
         """Return the energy function at states of the motion.
@@ -213,42 +211,6 @@ class EnergyBalance:
         states = self._precision.numbers(np.outer(np.arange(1, size + 1), PROBES).ravel() % 1).reshape(size, -1)
         times = self._precision.numbers(PROBES)
         return not any(self._output("power", times, states, None))
-
-
-def _gauss_legendre(n: int, precision: Precision) -> tuple[Numbers, Numbers]:
-    """Points in [-1, 1] and weights in the numbers of a precision."""
-    if precision.name == "double":
-        return leggauss(n)
-    texts = _in_digits(n, precision.digits)
-    points, weights = (np.array(list(map(precision.number, each))) for each in texts)
-    return points, weights
-
-
-@cache
-def _in_digits(n: int, digits: int) -> tuple[list[str], list[str]]:
-    """Return the roots of P_n, and 2/((1 - x^2) P_n'(x)^2), to a number of digits.
-
-    The formula is 25.4.29 of Abramowitz & Stegun.
-    """
-    import mpmath
-
-    def with_slope(x: Any) -> tuple[Any, Any]:
-        before, value = mpmath.mpf(1), x
-        for k in range(2, n + 1):
-            before, value = value, ((2 * k - 1) * x * value - (k - 1) * before) / k
-        return value, n * (before - x * value) / (1 - x**2)
-
-    points, weights = [], []
-    with mpmath.workdps(digits + MORE_DIGITS):
-        for guess in leggauss(n)[0]:
-            x, correction = mpmath.mpf(guess), mpmath.inf
-            while abs(correction) > mpmath.mpf(10) ** (-(digits + MORE_DIGITS) // 2):  # the next is their square
-                value, slope = with_slope(x)
-                correction = value / slope
-                x -= correction
-            points.append(mpmath.nstr(x, digits + MORE_DIGITS))
-            weights.append(mpmath.nstr(2 / ((1 - x**2) * with_slope(x)[1] ** 2), digits + MORE_DIGITS))
-    return points, weights
 
 
 def _constraints_move(problem: MotionProblem) -> bool:

@@ -21,7 +21,7 @@ from ..program.motion_program import Call, Expression, Name, Operation, Program,
 from ..program.precision import Precision
 from ..program.rewriting import computing
 from ..program.sign_pattern import program_in
-from .accuracy_check import FINEST, is_root
+from .accuracy_check import finest, is_root
 from .defect import DefectControl
 from .engines.engine import Step
 from .evaluation import Numbers, as_floats, evaluation_once
@@ -118,7 +118,7 @@ class Radicands(SignedFunctions):
         self._rows = [(name, -1, 1) for name in program.outputs]
         self._inputs = Inputs(problem, precision)
         self._evaluate = evaluation_once(problem, program_in(problem, program, pattern), precision)
-        self._defect, self._most = DefectControl(span, precision), MARGIN * max(tol, FINEST)
+        self._defect, self._most = DefectControl(span, precision), MARGIN * max(tol, finest(precision))
         self._edges = precision.numbers(EDGES)
 
     def values(self, times: Numbers, states: Numbers) -> Numbers:

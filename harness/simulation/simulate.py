@@ -18,7 +18,7 @@ from ..program.motion_program import Program
 from ..program.precision import Precision, read_precision
 from ..program.sign_pattern import drawing_with_values, with_values_in
 from ..supervisor import doing
-from .accuracy_check import expected, may_hide, relative_energy_error, violations
+from .accuracy_check import expected, finest, may_hide, relative_energy_error, violations
 from .defect import DefectControl
 from .engines.engine import ESTIMATED_AFTER, Solutions, Step, require_reach
 from .engines.registry import engine_class
@@ -219,6 +219,7 @@ class _Simulation:
     ) -> None:
         self.problem, self.samples, self.take = problem, request.samples, take
         self.precision, self.end, self.ending = request.numbers, end, ending
+        self.finest = finest(self.precision)
         self.start = self.precision.number(problem.start["t"])
         begun = time.perf_counter()
         self.motion = HybridMotion(problem, request, self.end)
@@ -410,7 +411,9 @@ class _Simulation:
             relative_degrees=self.problem.servo.relative_degrees,
             unresolved=self.motion.unresolved,
             sensitivities=self._derivatives_at_end(),
-            violations=tuple(violations(self._errors(left, start, end), self.begun.engine.tol, self.motion.steps)),
+            violations=tuple(
+                violations(self._errors(left, start, end), self.begun.engine.tol, self.motion.steps, self.finest)
+            ),
         )
 
     def _undetermined(self, end: MotionState, mode: Mode) -> tuple[str, ...]:
@@ -436,7 +439,7 @@ class _Simulation:
         ends = (start.here, start.state), (end.here, end.state)
         energy = self.energy_statistics
         change = max(self.recording.largest_work, energy.largest_change)
-        small = expected(self.begun.engine.tol, self.motion.steps) * self.motion.nominal.velocities
+        small = expected(self.begun.engine.tol, self.motion.steps, self.finest) * self.motion.nominal.velocities
         return {**errors, "energy": float(relative_energy_error(*ends, energy.error, change, small)), **within}
 
     def _cases(self, start: MotionState, end: MotionState) -> tuple[Difficulty, ...]:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from holonom.program.motion_program import Call, Name, Operation, Program
+from holonom.program.precision import read_precision
 from holonom.program.request import Solve
-from holonom.simulation.accuracy_check import expected, may_hide, trusted, violations
+from holonom.simulation.accuracy_check import expected, finest, may_hide, trusted, violations
 
 EXPECTED = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 
@@ -31,6 +32,14 @@ def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, 
     for value, rejected in ((0.0, False), (allowed, False), (np.nextafter(allowed, 1), True), (math.inf, True)):
         assert list(violations({"energy": value}, tol, steps)) == [("energy", value, allowed)] * rejected
         assert trusted({"energy": np.array([value])}, tol, np.array([steps])).tolist() == [not rejected]
+
+
+def test_more_digits_are_checked_to_the_last_and_residuals_in_double_precision():
+    quadruple = finest(read_precision("quadruple"))
+    assert quadruple == pytest.approx(1e-15 * 2.0**-60)
+    errors = {"position": 1e-14, "velocity": 1e-14, "energy": 1e-20}
+    assert not list(violations(errors, 2e-34, 50))
+    assert [violation.quantity for violation in violations(errors, 2e-34, 50, quadruple)] == ["energy"]
 
 
 def test_what_is_no_number_is_no_result():

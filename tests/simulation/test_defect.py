@@ -60,3 +60,14 @@ def test_a_soft_wall_and_the_gravity_that_leads_to_it():
     truth = solve_ivp(slope, (0, 20), (1, 0), method="DOP853", rtol=1e-12, atol=1e-14, max_step=0.02).y[:, -1]
     assert found.trusted
     assert [found.coordinates["x"], found.velocities["dot(x)"]] == pytest.approx(truth, rel=1e-8)
+
+
+def test_more_digits_of_a_soft_wall_are_right():
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = x^2/2,
+  forces = [exp(-1000*(x - 1/2))])$
+scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span = [0, 2])$""")
+    extended, quadruple = (scene.simulate(precision=each, samples=2).report for each in ("extended", "quadruple"))
+    assert abs(float(quadruple.energy_error)) < 1e-31
+    error = float(quadruple.coordinates["x"] - type(quadruple.coordinates["x"])(str(extended.coordinates["x"])))
+    assert abs(error) < 1e-17

@@ -20,7 +20,7 @@ from ...failures import ErrorKind, HolonomError
 from ...language import translatable
 from ...program.motion_problem import require_signs_known
 from ...program.motion_program import Operation, calls_of
-from ..accuracy_check import FINEST, has_root_of, may_hide
+from ..accuracy_check import finest, has_root_of, may_hide
 from ..constraints.factorization import factored_constraints
 from ..constraints.singularity import Watch, no_controls
 from ..defect import DefectControl
@@ -232,7 +232,7 @@ class ProgramEngine:
             return None
         together = [(steps, steps[0].block.states)] if steps[0].block else [([step], step.states) for step in steps]
         errors = [self._defect.errors(*each, self, self._matrices.nominal) for each in together]
-        well = np.concatenate(errors) <= MISSED * max(self.tol, FINEST)
+        well = np.concatenate(errors) <= MISSED * max(self.tol, finest(self.precision))
         missed = np.flatnonzero(~well & [self._defect.shortens(step) for step in steps])
         return int(missed[0]) if len(missed) else None
 
