@@ -101,8 +101,8 @@ class States:
         first = self.start["t"]
         span = self.problem.time_span
         last = mp.mpf(span[1]) if span else first + 2
-        if self.problem.law_end is not None:
-            last = min(last, mp.mpf(self.problem.law_end))
+        if self.problem.law_span is not None:
+            last = min(last, mp.mpf(self.problem.law_span[1]))
         return first, last
 
     def state(self, attempt: int) -> Values:

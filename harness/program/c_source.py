@@ -32,7 +32,7 @@ HELPERS = """\
 static inline double square(double x) { return x*x; }
 static inline double cube(double x) { return x*x*x; }
 static inline double sign(double x) { return x > 0 ? 1 : x < 0 ? -1 : x; }"""
-UNTIL_END = "until_end"  # of the time, if functions of it end: nan after that
+IN_SPAN = "in_span"  # of the time, if functions of it have a span: nan outside
 NOT_INLINE = """\
 #if !defined PIECE && defined __GNUC__
 #define PIECE static __attribute__((noinline))
@@ -103,11 +103,12 @@ def helpers_of(program: Program) -> str:
     Returns
     -------
     str
-        `HELPERS`, and the end of the functions of time.
+        `HELPERS`, and the span of the functions of time.
     """
-    if program.law_end is None:
+    if program.law_span is None:
         return HELPERS
-    return f"{HELPERS}\nstatic inline double {UNTIL_END}(double t) {{ return t <= {program.last_time} ? t : NAN; }}"
+    first, last = program.times
+    return f"{HELPERS}\nstatic inline double {IN_SPAN}(double t) {{ return t >= {first} && t <= {last} ? t : NAN; }}"
 
 
 def scalar_statements(program: Program, inputs: Sequence[str]) -> Iterator[str]:
@@ -139,12 +140,12 @@ def title_of(program: Program) -> str:
     Returns
     -------
     str
-        Scene, number of operations, method of the solve, range, and the last time for which functions have values.
+        Scene, number of operations, method of the solve, range, and the times for which functions have values.
     """
     scene = f" of {program.scene}" if program.scene else ""
     operations = f"{program.operations} operations, {program.solve} solve ({program.method})"
-    end = "" if program.law_end is None else f", until t = {float(program.law_end):.10g}"
-    return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}{end}"
+    span = "" if program.law_span is None else ", from t = {:.10g} to {:.10g}".format(*map(float, program.law_span))
+    return f"Motion program{scene}: {operations}{_redundancy(program)}; {range_of(program)}{span}"
 
 
 def range_of(program: Program) -> str:
@@ -217,8 +218,8 @@ def statements(program: Program, target: Target, inputs: Sequence[str], writes: 
     """
     copied, names = () if target.reads_in_place else names_used(program), {}
     for index, (name, value) in enumerate(zip(program.inputs, inputs, strict=True)):
-        if name == "t" and program.law_end is not None:
-            value = f"{target.prefix}{UNTIL_END}({value})"
+        if name == "t" and program.law_span is not None:
+            value = f"{target.prefix}{IN_SPAN}({value})"
         names[name] = infix.atom(value if target.reads_in_place else f"v{index}")
         if name in copied:
             yield target.statement.format(name=f"v{index}", formula=value)
@@ -358,7 +359,7 @@ def batch_support(many: SourceParts) -> str:
         Definitions in C.
     """
     arities = {name: 2 if operation in BINARY else 1 for operation, name in FUNCTIONS.items()}
-    arities |= {"pow": 2, UNTIL_END: 1}
+    arities |= {"pow": 2, IN_SPAN: 1}
     text = many.functions + many.body
     called = {name: arity for name, arity in arities.items() if f"lanes_{name}(" in text}
     return (

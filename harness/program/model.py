@@ -17,7 +17,7 @@ from ..sandbox import Limits
 from ..schema import Names, NumberText
 from ..source import Source
 from ..structs import entry, structured
-from .motion_program import Program
+from .motion_program import LAW_SPAN, LawSpan, Program
 from .request import Request
 from .table import Table
 
@@ -60,9 +60,7 @@ class Model:
         None,
     )
     outputs: Program | None = entry("Program: what the scene observes under names of its own; null without any.", None)
-    law_end: NumberText | None = entry(
-        "The last time for which tables or special functions give values; null where nothing ends them.", None
-    )
+    law_span: LawSpan | None = entry(LAW_SPAN, None)
 
     @staticmethod
     def of_document(document: Mapping[str, Any]) -> "Model":
@@ -76,12 +74,12 @@ class Model:
         Returns
         -------
         Model
-            Each program with the end of the functions of time.
+            Each program with the span of the functions of time.
         """
         model = structured(Model, document)
         programs = {name: getattr(model, name) for name in PROGRAMS}
         return replace(
-            model, **{name: program and replace(program, law_end=model.law_end) for name, program in programs.items()}
+            model, **{name: program and replace(program, law_span=model.law_span) for name, program in programs.items()}
         )
 
     @property

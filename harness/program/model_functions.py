@@ -15,11 +15,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from .c_source import FUNCTIONS, UNTIL_END, Target, statements
+from .c_source import FUNCTIONS, IN_SPAN, Target, statements
 from .model import Model
 from .motion_program import Program
 
-HELPERS = frozenset({"pow", "square", "cube", UNTIL_END})  # what C's arithmetic calls besides `FUNCTIONS`
+HELPERS = frozenset({"pow", "square", "cube", IN_SPAN})  # what C's arithmetic calls besides `FUNCTIONS`
 
 
 class ModelFunction(NamedTuple):

@@ -21,7 +21,7 @@ from ..schema import FloatText, Names, NumberText
 from ..source import Source, source_of
 from ..structs import entry, group, structured
 from .drawing import Drawing
-from .motion_program import ROUNDED, Program
+from .motion_program import LAW_SPAN, ROUNDED, LawSpan, Program
 from .request import Request
 from .table import Table
 
@@ -204,11 +204,7 @@ class MotionProblem:
         "place of h and c. null with an obstruction, or where forces contain multipliers.",
         None,
     )
-    law_end: NumberText | None = entry(
-        "The last time at which the drives have values, where tables or special functions give them; null where "
-        "nothing ends them.",
-        None,
-    )
+    law_span: LawSpan | None = entry(LAW_SPAN, None)
     written_out: Names = entry(
         "Special functions of the time, which the programs hold as sums of Chebyshev polynomials.", ()
     )
@@ -419,8 +415,8 @@ def require_law_at(problem: MotionProblem, t: float) -> None:
     HolonomError
         A law has no values there.
     """
-    if problem.law_end is not None:
-        end, start = float(problem.law_end), float(problem.start["t"])
+    if problem.law_span is not None:
+        end, start = float(problem.law_span[1]), float(problem.start["t"])
         if t - end > ROUNDED * (end - start):
             raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{end:.10g}")
 

@@ -27,9 +27,13 @@ from ..schema import Names, NumberText
 from ..structs import computed, entry, structured
 from .request import Solve
 
+LawSpan = tuple[NumberText, NumberText]
+LAW_SPAN = "The times between which the tables and special functions in it have values; null without any."
+
+
 DEEPEST = 100  # levels of an expression: Maxima names what is deeper, and Python's recursion limit stays far away
 LONGEST_NUMBER = 4000  # characters of a number's digits; Python reads 4300
-ROUNDED = 1e-9  # of the time to which functions of time have values: how far behind it they have them, too
+ROUNDED = 1e-9  # of the times between which functions of time have values: how far outside they have them, too
 SHOWN = 60  # characters of a rejected fragment that the error shows
 DECIMAL = re.compile(r"-?\d+(\.\d*)?([eE][+-]?\d{1,4})?")
 
@@ -99,18 +103,16 @@ class Program:
     redundant: tuple[str, ...] = entry(
         "Multipliers that were put to zero, for their constraints follow from the others near the initial state.", ()
     )
-    law_end: NumberText | None = entry(
-        "The last time for which special functions, or tables of servo-constraints, give values; null without any.",
-        None,
-    )
+    law_span: LawSpan | None = entry(LAW_SPAN, None)
 
     SHAPE: ClassVar = {"type": "object"}  # within other documents, where it is a document of its own
 
     @property
-    def last_time(self) -> float:
-        """The time `law_end`, with room for rounding."""
-        end = float(self.law_end)
-        return end + ROUNDED * abs(end)
+    def times(self) -> tuple[float, float]:
+        """The first and the last time of `law_span`, with room for rounding."""
+        first, last = map(float, self.law_span)
+        room = ROUNDED * max(abs(first), abs(last))
+        return first - room, last + room
 
     @cached_property
     @computed("Number of operations of all assignments.", minimum=0)

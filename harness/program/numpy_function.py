@@ -23,7 +23,7 @@ BLOCK = 4096  # points carried through the program at a time; the fastest of 256
 OF_SCIPY = {Operation.ERF: ELEMENTARY[Operation.ERF]}  # ufuncs of scipy.special, loaded where a program calls one
 UFUNCS = {operation: getattr(np, name) for operation, name in ELEMENTARY.items() if operation not in OF_SCIPY}
 UFUNC_NAMES = {ufunc.__name__: ufunc for ufunc in (*UFUNCS.values(), np.square, np.power)}
-UNTIL_END = {"where": np.where, "nan": np.nan}  # what ends the time
+IN_SPAN = {"where": np.where, "nan": np.nan}  # what bounds the time
 
 
 class NumpyFunction:
@@ -100,7 +100,7 @@ def _compiled(program: Program) -> Callable[[Sequence[NDArray[np.float64]]], lis
     source = "\n ".join(["def motion(inputs):", *_statements(program)])
     module = compile(source, "<motion program>", "exec")
     code = next(constant for constant in module.co_consts if isinstance(constant, CodeType))
-    return FunctionType(code, UFUNC_NAMES | UNTIL_END | _called_of_scipy(code.co_names))
+    return FunctionType(code, UFUNC_NAMES | IN_SPAN | _called_of_scipy(code.co_names))
 
 
 def _called_of_scipy(names: Sequence[str]) -> Mapping[str, np.ufunc]:
@@ -120,8 +120,8 @@ def _statements(program: Program) -> Iterator[str]:
     """
     variables = {name: f"v{index}" for index, name in enumerate(program.inputs)}
     yield f"[{', '.join(variables.values())}] = inputs"
-    if program.law_end is not None:
-        yield "{0} = where({0} <= {1}, {0}, nan)".format(variables["t"], program.last_time)
+    if program.law_span is not None:
+        yield "{0} = where(({0} >= {1}) & ({0} <= {2}), {0}, nan)".format(variables["t"], *program.times)
     last_use, free, taken = _last_uses(program), [], len(variables)
     for index, (name, expression) in enumerate(program.assignments):
         used = names_in(expression)

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from textwrap import fill, indent
 
-from .c_source import ONE, UNTIL_END, Target, comment_text, title_of
+from .c_source import IN_SPAN, ONE, Target, comment_text, title_of
 from .model import Model
 from .model_functions import ModelFunction, body, called, given, has_law, model_functions
 from .rewriting import with_joined_roots
@@ -34,7 +34,7 @@ class Package:
     usage: str  # lines of the description
     support: str  # ``_points`` and ``_stacked``
     imports: str  # what the support needs
-    ended: str  # the time until functions of it end, at ``{end}``
+    in_span: str  # the time if functions of it have values, between two ``{}``
     elsewhere: Mapping[str, str] = field(default_factory=dict)  # functions that another module has
     renamed: Mapping[str, str] = field(default_factory=dict)  # functions that it calls otherwise than C
     own: frozenset[str] = frozenset({"cube"})  # functions that the module itself has
@@ -63,13 +63,13 @@ def module_text(model: Model, name: str, package: Package, ending: str = "") -> 
     if package.differentiates:
         functions = [each._replace(program=with_joined_roots(each.program)) for each in functions]
     text = "\n\n\n".join(_functions(model, functions))
-    ended = package.ended.format(end=model.motion.last_time) if UNTIL_END in called(text) else ""
-    support = [package.support.rstrip(), CUBE if "cube" in called(text) else "", ended, _tables(model)]
+    in_span = package.in_span.format(*model.motion.times) if IN_SPAN in called(text) else ""
+    support = [package.support.rstrip(), CUBE if "cube" in called(text) else "", in_span, _tables(model)]
     return filled(
         "functions.py.txt",
         title=comment_text(f"{name}: {title_of(model.motion)}"),
         usage=fill(f"{USAGE}{'' if has_law(model) else LAWLESS} {package.usage}", 120),
-        imports="\n".join(_imports(model, called(text) - package.own - {UNTIL_END}, package)),
+        imports="\n".join(_imports(model, called(text) - package.own - {IN_SPAN}, package)),
         state=_names(model.state),
         controls=_names(model.histories),
         parameters=_names(model.parameters),

@@ -206,8 +206,8 @@ def last_time(problem: MotionProblem, until: Fraction | None, precision: Precisi
             ErrorKind.NOT_AFTER_START,
             detail=translatable("%(end)s is not after %(start)s", end=f"{float(end):g}", start=problem.start["t"]),
         )
-    if problem.law_end is not None and end > precision.number(problem.law_end):
-        raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{float(problem.law_end):.10g}")
+    if problem.law_span is not None and end > precision.number(problem.law_span[1]):
+        raise HolonomError(ErrorKind.LAW_ENDS, detail=f"{float(problem.law_span[1]):.10g}")
     return end
 
 

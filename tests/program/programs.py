@@ -148,10 +148,11 @@ def chain(links: int) -> Program:
     return program(inputs, assignments, outputs)
 
 
-ENDS = replace(program(["t", "a"], [("w", ["Multiply", "t", "a"])], {"out": "w"}), law_end="3.5")
-ENDS_POINTS = np.array([[-1.0, 3.5, np.nextafter(3.5, 4.0), 3.6, 100.0], [2.0] * 5])
-ENDS_VALUES = [-2.0, 7.0, pytest.approx(7.0), pytest.approx(np.nan, nan_ok=True), pytest.approx(np.nan, nan_ok=True)]
-"""A program whose functions of the time end, at points before and behind that, and its values."""
+ENDS = replace(program(["t", "a"], [("w", ["Multiply", "t", "a"])], {"out": "w"}), law_span=("-2", "0"))
+_INSIDE, _OUTSIDE = [-1.0, 0.0, -2.0, np.nextafter(-2.0, -3.0), 1e-17], [0.1, 100.0, -2.1]
+ENDS_POINTS = np.array([[*_INSIDE, *_OUTSIDE], [2.0] * 8])
+ENDS_VALUES = [*(pytest.approx(2 * t) for t in _INSIDE), *[pytest.approx(np.nan, nan_ok=True)] * 3]
+"""A program whose functions of the time have a span, at points inside, with rounding, and outside, and its values."""
 
 
 def random_points(written, seed=0):

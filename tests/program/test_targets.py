@@ -52,9 +52,13 @@ def test_names_are_themselves_in_python():
 @pytest.mark.parametrize("name", ["c", "matlab", "python_numpy", "python_jax"])
 def test_the_last_time_of_a_table_is_in_the_code_and_in_its_programs(name, tmp_path):
     model = lift_by_a_table(tmp_path / "lift.mac")
-    assert {float(each.law_end) for each in (model, model.law, model.motion)} == {POINTS[-1][0]}
+    assert {tuple(map(float, each.law_span)) for each in (model, model.law, model.motion)} == {
+        (POINTS[0][0], POINTS[-1][0])
+    }
     written = target(name).write_model(model, "lift")
-    assert f"t = {POINTS[-1][0]:.10g}" in (written if isinstance(written, str) else written["lift.h"])
+    assert f"from t = {POINTS[0][0]:.10g} to {POINTS[-1][0]:.10g}" in (
+        written if isinstance(written, str) else written["lift.h"]
+    )
 
 
 @pytest.mark.parametrize("name", ["javascript", "python"])
@@ -63,4 +67,4 @@ def test_the_last_time_of_a_special_function_was_not_in_code_of_the_motion(name,
     scene = write_scene(f"""load("holonom.mac")$
 system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
 scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 7/2])$""")
-    assert ("t = 3.5" in MotionProgram(scene, Request(None), Limits()).written(name)) is ends
+    assert ("from t = 0 to 3.5" in MotionProgram(scene, Request(None), Limits()).written(name)) is ends

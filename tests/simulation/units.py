@@ -60,7 +60,7 @@ def in_units(problem: MotionProblem, units: Units) -> MotionProblem:
     return replace(
         problem,
         time_span=span and tuple(text(number, units.time) for number in span),
-        law_end=problem.law_end and text(problem.law_end, units.time),
+        law_span=problem.law_span and tuple(text(each, units.time) for each in problem.law_span),
         start={name: text(number, of_inputs[name]) for name, number in problem.start.items()},
         tables=tables,
         initial=replace(problem.initial, parametric=start and replace(start, program=changed(start.program))),

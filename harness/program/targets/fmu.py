@@ -85,7 +85,7 @@ def _model_description(model: Model, name: str, token: str) -> ElementTree.Eleme
         variableNamingConvention="flat",
     )
     ElementTree.SubElement(root, "ModelExchange", modelIdentifier=name, canGetAndSetFMUState="true")
-    end = {} if model.law_end is None else {"stopTime": model.law_end}
+    end = {} if model.law_span is None else {"stopTime": model.law_span[1]}
     ElementTree.SubElement(root, "DefaultExperiment", startTime=model.start["t"], **end)
     variables = ElementTree.SubElement(root, "ModelVariables")
     for reference, attributes in enumerate(_variables(model)):

@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable
 
-from ..c_source import FUNCTIONS, ONE, UNTIL_END, Target, comment_text, statements, title_of
+from ..c_source import FUNCTIONS, IN_SPAN, ONE, Target, comment_text, statements, title_of
 from ..identifiers import require_identifier
 from ..model_functions import called
 from ..motion_program import Operation, Program
@@ -11,7 +11,7 @@ from ..templates import filled
 
 SCRIPT = Target("const {name} = {formula};", ONE.arithmetic)
 NAMES_IN_MATH = {Operation.ABS: "abs: fabs"}  # where C and Math differ
-ENDED = "\n  const until_end = t => t <= {end} ? t : NaN;"
+DEFINED_IN_SPAN = "\n  const in_span = t => t >= {} && t <= {} ? t : NaN;"
 MISSING_IN_MATH = {Operation.ERF}
 
 
@@ -42,7 +42,7 @@ def write(program: Program, name: str = "motion") -> str:
         "motion.js",
         title=comment_text(title_of(program)),
         name=name,
-        ended=ENDED.format(end=program.last_time) if UNTIL_END in called(body) else "",
+        in_span=DEFINED_IN_SPAN.format(*program.times) if IN_SPAN in called(body) else "",
         functions=", ".join(
             NAMES_IN_MATH.get(operation, function)
             for operation, function in FUNCTIONS.items()

@@ -6,7 +6,7 @@ from textwrap import indent
 
 from ...failures import ErrorKind, HolonomError
 from ...hidden import visible_line
-from ..c_source import ONE, UNTIL_END, Target, comment_text, title_of
+from ..c_source import IN_SPAN, ONE, Target, comment_text, title_of
 from ..identifiers import require_identifier
 from ..model import Model
 from ..model_functions import ModelFunction, body, called, given, has_law, model_functions
@@ -30,7 +30,7 @@ KEYWORDS = re.findall(
     "try until while",
 )  # of MATLAB and Octave
 REAL_OR_NAN = "y = real_or_nan(y)\nif ~isreal(y), y = NaN; end"
-ENDED = "t = until_end(t)\nif t > {end}, t = NaN; end"
+NOT_IN_SPAN = "t = in_span(t)\nif t < {} || t > {}, t = NaN; end"
 PIECE = "piece = piece_at(t, pieces)\npiece = pieces(max([1; find(pieces(:, 1) <= t, 1, 'last')]), :);"
 
 
@@ -61,8 +61,8 @@ def write_model(model: Model, name: str) -> str:
     helpers = [text for helper, text in HELPERS.items() if helper in called("\n".join(parts))]
     real = [REAL_OR_NAN] if any("real_or_nan" in each for each in helpers) else []
     pieces = [PIECE] if model.tables else []
-    ended = [ENDED.format(end=model.motion.last_time)] if UNTIL_END in called("\n".join(parts)) else []
-    written = "\n\n\n".join(f"function {each}\nend" for each in [*parts, *pieces, *ended, *helpers, *real])
+    in_span = [NOT_IN_SPAN.format(*model.motion.times)] if IN_SPAN in called("\n".join(parts)) else []
+    written = "\n\n\n".join(f"function {each}\nend" for each in [*parts, *pieces, *in_span, *helpers, *real])
     if name in {*KEYWORDS, *re.findall(r"[A-Za-z]\w*", written)}:
         raise HolonomError(ErrorKind.NAME_TAKEN, detail=name)
     return filled(

@@ -16,8 +16,8 @@ from ..motion_program import Constant, Operation, Program
 from ..templates import filled
 
 DEFINED = {Operation.ABS: "abs", Operation.SIGN: "sign", Operation.POWER: "power"}
-ENDED = """
-    if ({time} > {end}) == True:  # functions of the time end; a symbol is not larger
+IN_SPAN = """
+    if ({time} < {first}) == True or ({time} > {last}) == True:  # no values there; a symbol is neither
         {time} = functions.nan"""
 FUNCTIONS = {operation: f"functions.{name}" for operation, name in ELEMENTARY.items()} | DEFINED
 
@@ -41,13 +41,18 @@ def write(program: Program) -> str:
         inputs=_listed(program.inputs),
         outputs=_listed(tuple(program.outputs)),
         variables=" ".join(f"{variables[known].text}," for known in program.inputs),
-        ended="" if program.law_end is None else ENDED.format(time=variables["t"].text, end=program.last_time),
+        in_span="" if program.law_span is None else _in_span(program, variables["t"]),
         body="\n".join(
             f"    {variables[known].text} = {PYTHON.value(expression, variables).text}"
             for known, expression in program.assignments
         ),
         results=", ".join(PYTHON.atom(value, variables).text for value in program.outputs.values()),
     )
+
+
+def _in_span(program: Program, time: Formula) -> str:
+    first, last = program.times
+    return IN_SPAN.format(time=time.text, first=first, last=last)
 
 
 def _names(program: Program) -> Iterator[str]:

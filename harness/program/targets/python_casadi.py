@@ -7,14 +7,14 @@ from ..model_functions import has_law, model_functions
 from ..python_module import Package, module_text
 from ..templates import filled, template
 
-ENDED = """\
-def until_end(t):
-    return if_else(t <= {end}, t, nan)"""
+IN_SPAN = """\
+def in_span(t):
+    return if_else(logic_and(t >= {}, t <= {}), t, nan)"""
 CASADI = Package(
     module="casadi",
     usage="They are CasADi's, made of SX, for columns of one point, with derivatives. A sign counts as constant.",
-    imports="from casadi import SX, Function, if_else, vertcat",
-    ended=ENDED,
+    imports="from casadi import SX, Function, if_else, logic_and, vertcat",
+    in_span=IN_SPAN,
     support=template("casadi.py.txt"),
     renamed={"pow": "power"},
     own=frozenset({"square", "cube"}),

@@ -6,7 +6,7 @@ The functions are pure, for jit, vmap and grad.
 from ..model import Model
 from ..python_module import Package, module_text
 from ..templates import template
-from .python_numpy import ENDED, USAGE
+from .python_numpy import IN_SPAN, USAGE
 
 ARRAY = """\
 def _array(values):
@@ -25,7 +25,7 @@ JAX = Package(
     module="jax.numpy",
     usage=f"{USAGE} {PURE}",
     imports="import jax.numpy as xp",
-    ended=ENDED,
+    in_span=IN_SPAN,
     support=ARRAY + template("arrays.py.txt"),
     elsewhere={"erf": "jax.scipy.special"},
     differentiates=True,

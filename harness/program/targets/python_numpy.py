@@ -11,14 +11,14 @@ def _array(values):
 
 
 """
-ENDED = """\
-def until_end(t):
-    return xp.where(t <= {end}, t, nan)"""
+IN_SPAN = """\
+def in_span(t):
+    return xp.where((t >= {}) & (t <= {}), t, nan)"""
 NUMPY = Package(
     module="numpy",
     usage=USAGE,
     imports="import numpy as xp",
-    ended=ENDED,
+    in_span=IN_SPAN,
     support=ARRAY + template("arrays.py.txt"),
     elsewhere={"erf": "scipy.special"},
 )

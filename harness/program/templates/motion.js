@@ -3,7 +3,7 @@
 
 const @{name} = (() => {
   const {@{functions}, pow} = Math;
-  const square = x => x*x, cube = x => x*x*x;@{ended}
+  const square = x => x*x, cube = x => x*x*x;@{in_span}
   const erf = x => {  // exp(-x^2) times the series of positive terms; 1 to rounding beyond 6
     if (fabs(x) > 6) return sign(x);
     let term = x, sum = x;
