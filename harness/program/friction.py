@@ -17,7 +17,7 @@ from fractions import Fraction
 
 from .differentiation import derivative_name, differentiated
 from .motion_problem import MotionProblem
-from .motion_program import Atom, Name, Operation, Program, names_used
+from .motion_program import Atom, Call, Expression, Name, Operation, Program, names_used
 from .rewriting import ONE, ZERO, computing, with_numbers
 from .tape import Tape
 
@@ -75,6 +75,35 @@ def numbers_in(pattern: Pattern) -> dict[str, Fraction]:
     return {name: Fraction(STUCK.get(value, value)) for name, value in pattern.items() if value != SLIDING}
 
 
+def with_sizes(program: Program, pattern: Pattern, zeros: Collection[str]) -> Program:
+    """Return a program with the sizes of switching functions.
+
+    |g| is ``sign(s) g`` where forces are not linear in the sign s otherwise. It is zero while g remains zero.
+
+    Parameters
+    ----------
+    program : Program
+        A program with signs.
+    pattern : Pattern
+        The values of the signs.
+    zeros : collection of str
+        Signs of the switching functions that remain zero.
+
+    Returns
+    -------
+    Program
+    """
+    numbers = numbers_in(pattern) | dict.fromkeys(zeros, ZERO)
+    known = {Call(Operation.SIGN, (Name(name),)): number for name, number in numbers.items()}
+
+    def written(expression: Expression) -> Expression:
+        if isinstance(expression, Call) and expression not in known:
+            return Call(expression.operation, tuple(map(written, expression.arguments)))
+        return known.get(expression, expression)
+
+    return replace(program, assignments=tuple((name, written(value)) for name, value in program.assignments))
+
+
 def affine_terms(
     problem: MotionProblem, pattern: Pattern, zeros: Collection[str], unknown: Collection[str]
 ) -> Program | None:
@@ -100,7 +129,8 @@ def affine_terms(
     wanted = {f"drive[{problem.places[name]}]" for name in zeros}
     wanted |= {name for name in problem.switching.outputs if name.startswith(("size[", "reaction[", "regular"))}
     given = {name: number for name, number in numbers_in(pattern).items() if name not in unknown}
-    program = with_numbers(computing(problem.switching, wanted), given)
+    program = with_sizes(computing(problem.switching, wanted), pattern, zeros)
+    program = with_numbers(program, given)
     both = differentiated(program, {name: {name: ONE} for name in unknown})
     slopes = computing(both, both.outputs.keys() - program.outputs.keys())
     if not names_used(slopes).isdisjoint(unknown):

@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any, TypeVar
 
 from .drawing import Drawing
-from .friction import SLIDING, Pattern, numbers_in, sliding_signs
+from .friction import SLIDING, Pattern, numbers_in, sliding_signs, sticking, with_sizes
 from .motion_problem import DependsOn, Ends, MotionProblem, Servo
 from .motion_program import Call, Name, Operation, Program
 from .rewriting import computing, preceded, untaken, with_names_for_numbers, with_numbers
@@ -63,6 +63,7 @@ def program_in(problem: MotionProblem, program: Program, pattern: Pattern) -> Pr
     Program
     """
     if SLIDING in pattern.values():
+        program = with_sizes(program, pattern, sticking(pattern))
         program = preceded(sliding_signs(problem, pattern), program)
     return with_numbers(program, numbers_in(pattern))
 

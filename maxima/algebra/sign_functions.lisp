@@ -9,6 +9,9 @@
 ;;; order of their symbols, in which a function may contain the symbols before it. Written openly, |g| and signum(g)
 ;;; stay, and w is 0 or 1 also where g is zero.
 ;;;
+;;; On g = 0 a motion slides with an amount s between -1 and 1 if it is linear in s. In friction of the speed, as
+;;; exp(-|v|) signum(v), |v| is signum(s) v, so that only the amount itself is s.
+;;;
 ;;; g may vanish identically for some values of the signs in it, as max(0, x) does where x < 0. Such a g is written as a
 ;;; sum over these values; its sign is 0 there.
 
@@ -18,6 +21,7 @@
 (defvar *signs-met* nil "List of (symbol . switching function), last first.")
 (defvar *written-openly* nil "Whether signs stay signum(g).")
 (defvar *at-zeros* nil "Whether signs are 0, too, so that their squares are not 1.")
+(defvar *sizes-apart* nil "Whether |g| is signum(s) g, with which it is zero where the sign s has no value.")
 
 (defun $written_openly (expression) (let ((*written-openly* t)) (with-signs expression)))
 
@@ -28,6 +32,12 @@
           (cons '(mlist) (mapcar #'(lambda (met) (list '(mlist) (car met) (cdr met)))
                                  (reverse *signs-met*)))
           written)))
+
+(defun $written_with_sizes (expressions signs)
+  "The expressions with these symbols, [s, g], for the signs of all functions in them, and |g| as signum(s) g."
+  (let ((*sizes-apart* t)
+        (*signs-met* (reverse (mapcar #'(lambda (met) (cons (second met) (third met))) (cdr signs)))))
+    (with-signs expressions)))
 
 (defun with-signs (e)
   (if (or (atom e) (member 'array (car e)))
@@ -79,7 +89,10 @@
                 (add (mul (weight-of-sign sign) a) (mul (weight-of-sign (neg sign)) b))))
           arguments))
 
-(defun absolute-value (g) (if *written-openly* (take '(mabs) g) (mul g (sign-of-function g))))
+(defun absolute-value (g)
+  (cond (*written-openly* (take '(mabs) g))
+        (*sizes-apart* (mul g (take '(%signum) (sign-of-function g))))
+        (t (mul g (sign-of-function g)))))
 (defun weight-of-sign (sign) (div (add 1 sign) 2))
 
 ;; Of an if that it cannot decide Maxima evaluates the first condition alone: what is called behind it is not called

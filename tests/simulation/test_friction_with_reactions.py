@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from refusing import failing
-from scipy.integrate import solve_ivp
+from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 
 import holonom
@@ -38,6 +38,46 @@ def test_a_block_on_an_incline_slides_and_stops_and_stays_where_friction_holds_i
         x += g * (np.sin(alpha) - mu * np.cos(alpha)) * t**2 / 2
     assert motion["x"][-1] == pytest.approx(x, abs=1e-12)
     assert motion["lambda1"] == pytest.approx(2 * g * np.cos(alpha))
+
+
+@pytest.mark.parametrize("normal", ["abs(lambda1)", "10"])
+def test_friction_that_falls_with_the_speed_stops_a_block_where_its_work_says(normal):
+    """Truth: v dv/dx = -F(v); a drive below F(0) does not move it again."""
+    speed = of_text(f"""
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [y],
+  forces = [-(1/5 + 3/10*exp(-2*abs(dot(x))))*{normal}*signum(dot(x)) + 1/4*hstep(t - 9), -10])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 3], time_span = [0, 100])$""")
+    way, _ = quad(lambda v: v / ((0.2 + 0.3 * np.exp(-2 * v)) * 10), 0, 3, epsabs=0, epsrel=1e-13)
+    motion = speed.simulate(samples=11)
+    assert motion["x"][1:] == pytest.approx(way, rel=1e-10)
+    assert np.abs(motion["dot(x)"][1:]).max() < 1e-12
+
+
+BELT = """
+system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + 2*dot(z)^2)/2,
+  forces = [-2*x - (1 + exp(-3*abs(dot(x) - dot(z))))*signum(dot(x) - dot(z)),
+    (1 + exp(-3*abs(dot(x) - dot(z))))*signum(dot(x) - dot(z)) + 4*sin(t)
+      - (1 + 2*exp(-4*abs(dot(z))))*signum(dot(z)) - abs(dot(z))*dot(z)/10])$
+scene : holonomic_scene(system, initial_state = [x = 2, z = 0, dot(x) = 0, dot(z) = 0], time_span = [0, 20])$
+"""
+
+
+def test_two_contacts_with_friction_that_falls_with_the_speed():
+    """Truth: signs smoothed ever more, extrapolated."""
+
+    def slope(t, state, k):
+        x, z, v, w = state
+        upper = (1 + np.exp(-3 * abs(v - w))) * np.tanh(k * (v - w))
+        lower = (1 + 2 * np.exp(-4 * abs(w))) * np.tanh(k * w) + abs(w) * w / 10
+        return v, w, -2 * x - upper, (upper + 4 * np.sin(t) - lower) / 2
+
+    rough, fine = (
+        solve_ivp(slope, (0, 20), (2, 0, 0, 0), method="LSODA", rtol=1e-10, atol=1e-12, args=(k,)).y[:, -1]
+        for k in (1e5, 2e5)
+    )
+    motion = of_text(BELT).simulate(samples=2)
+    found = [motion[name][-1] for name in ("x", "z", "dot(x)", "dot(z)")]
+    assert found == pytest.approx(2 * fine - rough, abs=3e-5)
 
 
 def test_a_bead_on_a_rough_hoop_has_the_speed_of_the_closed_form():
