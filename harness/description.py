@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 from .described import Shape, System, Values, expression
 from .expression.functions import FUNCTIONS
-from .expression.trees import JSON_INTEGERS, Tree
+from .expression.trees import Tree, integer_tree
 from .failures import ErrorKind, HolonomError
 from .formats import Document, decoded, require
 from .hidden import hidden_character
@@ -420,5 +420,5 @@ def _number(text: str) -> Tree:
     """
     numerator, _, denominator = text.partition("/")
     value = Fraction(numerator) / Fraction(denominator or 1)
-    parts = [part if abs(part) < JSON_INTEGERS else {"num": str(part)} for part in value.as_integer_ratio()]
+    parts = [integer_tree(part) for part in value.as_integer_ratio()]
     return parts[0] if value.denominator == 1 else ["Rational", *parts]

@@ -11,7 +11,7 @@ from sympy import Expr, Float, Indexed, IndexedBase, Integer, Rational, S, Symbo
 
 from . import elliptic
 from .functions import CONSTANTS, FUNCTIONS
-from .trees import FLOAT, INTEGER, JSON_INTEGERS, Tree, converted, integer, quantity, refusal
+from .trees import FLOAT, INTEGER, Tree, converted, integer, integer_tree, quantity, refusal
 
 DOUBLE_DIGITS = 17  # decimal digits that distinguish any two doubles
 DOUBLE_BITS = 53
@@ -139,15 +139,15 @@ def _symbol(name: str) -> Symbol:
 def _write(expression: Expr) -> tuple[Callable[..., Tree], list]:
     match expression:
         case Integer():
-            tree = _written_integer(int(expression))
+            tree = integer_tree(int(expression))
         case Rational():
-            tree = ["Rational", _written_integer(expression.p), _written_integer(expression.q)]
+            tree = ["Rational", integer_tree(expression.p), integer_tree(expression.q)]
         case Float():
             tree = {"num": _digits(expression)}
         case Symbol() if expression == _symbol(expression.name):
             tree = expression.name
         case Indexed() if all(isinstance(index, Integer) for index in expression.indices):
-            indices = [_written_integer(int(index)) for index in expression.indices]
+            indices = [integer_tree(int(index)) for index in expression.indices]
             tree = ["Subscript", expression.base.label.name, *indices]
         case _ if expression in CONSTANT_NAMES:
             tree = CONSTANT_NAMES[expression]
@@ -159,10 +159,6 @@ def _write(expression: Expr) -> tuple[Callable[..., Tree], list]:
         case _:
             raise refusal(expression)
     return (lambda: tree), []
-
-
-def _written_integer(value: int) -> Tree:
-    return value if abs(value) < JSON_INTEGERS else {"num": str(value)}
 
 
 def _digits(value: Float) -> str:

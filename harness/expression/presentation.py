@@ -12,7 +12,7 @@ from sympy import Add, Expr, Float, Indexed, Integer, Mul, Number, Pow, Rational
 from ..failures import ErrorKind, HolonomError
 from .mathjson import CONSTANT_NAMES, HEADS
 from .notation import scene_text
-from .trees import Tree
+from .trees import Tree, integer_tree
 
 TIME = Symbol("t", real=True)
 READING_ORDER = (Number, sympy.NumberSymbol, Symbol, Indexed, sympy.Function, Pow, Add)  # of factors
@@ -77,7 +77,7 @@ def _signed(expression: Expr) -> tuple[int, Tree]:
         case Float():
             return (-1 if expression < 0 else 1), {"num": sympy.sstr(abs(expression), full_prec=False)}
         case Integer():
-            return (-1 if expression < 0 else 1), abs(int(expression))
+            return (-1 if expression < 0 else 1), integer_tree(abs(int(expression)))
         case Rational() | Mul() | Pow(exp=Rational(is_negative=True)):
             return _signed_quotient(*sympy.fraction(expression, exact=True))
         case _:

@@ -136,6 +136,22 @@ def integer(tree: object) -> int:
             raise refusal(tree)
 
 
+def integer_tree(value: int) -> Tree:
+    """Return the tree of an integer of any size.
+
+    Parameters
+    ----------
+    value : int
+        The integer.
+
+    Returns
+    -------
+    Tree
+        `integer` returns its value.
+    """
+    return value if abs(value) < JSON_INTEGERS else {"num": str(value)}
+
+
 def quantity(name: str) -> str:
     """Return a name if it names a quantity.
 
