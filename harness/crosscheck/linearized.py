@@ -570,13 +570,14 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
             same = np.all(np.abs(apart) <= 10.0**-DIGITS * (1 + np.abs(position)))
             yield Condition(f"{place}another equilibrium", bool(same))
         known.append(position)
-        here = equations.at({**at_rest, **each["coordinates"], **each["multipliers"]})
+        point = {**at_rest, **each["coordinates"], **each["multipliers"]}
+        here = equations.at(point)
         forces = np.abs(list(each["multipliers"].values()))
         size = 1 + np.abs(here["equation_by_q"]) @ np.abs(position) + np.abs(here["equation_by_lambda"]) @ forces
         yield Condition(f"{place}balance of forces", here["equation"], size)
         size = 1 + np.abs(here["constraint_by_q"]) @ np.abs(position)
         yield Condition(f"{place}constraints", here["constraint"], size)
-        yield from _conditions_on_stability(place, equations, here, each)
+        yield from _conditions_on_stability(place, equations, here, point, each)
         yield from _conditions_on_exact_values(place, equations_at_rest, each)
 
 
@@ -633,7 +634,11 @@ def _conditions_on_turns(
 
 
 def _conditions_on_stability(
-    place: str, equations: DescribedEquations, here: Mapping[str, Matrix], each: Mapping[str, Any]
+    place: str,
+    equations: DescribedEquations,
+    here: Mapping[str, Matrix],
+    point: Mapping[str, float],
+    each: Mapping[str, Any],
 ) -> Iterator[Condition]:
     n = len(here["equation"])
     J, pushing = here["constraint_by_q"], here["equation_by_lambda"][:, equations.reacting]
@@ -646,14 +651,16 @@ def _conditions_on_stability(
     truth = scipy.linalg.eigvals(np.block([[none, one], [-K, -D]]), scipy.linalg.block_diag(one, M))
     given = _complex(each["eigenvalues"])
     size = np.max(np.abs(truth), initial=0.0)
+    if not each["isolated"]:
+        size = max(size, 1.0)  # all may be rounding errors
     left = list(given)
     for value in truth:  # close ones of a multiple eigenvalue have half the digits
         nearest = min(left, key=lambda z, value=value: abs(z - value))
         left.remove(nearest)
         yield Condition(f"{place}eigenvalue", nearest - value, size * 10.0 ** (DIGITS // 2))
-    stiff = np.linalg.svd(K, compute_uv=False)
+    stiff, rounding = np.linalg.svd(K, compute_uv=False), _rounding_of_stiffness(equations, here, point, N)
     if each["isolated"]:
-        yield Condition(f"{place}isolated", bool(m and stiff[-1] <= 10.0**-DIGITS * stiff[0]))
+        yield Condition(f"{place}isolated", bool(m and stiff[-1] <= max(10.0**-DIGITS * stiff[0], rounding)))
     parts, clear = truth.real, 10.0**-DIGITS * size
     match each["stability"]:
         case "asymptotically stable":
@@ -662,8 +669,22 @@ def _conditions_on_stability(
             yield Condition(f"{place}instability", not np.any(parts > clear))
         case "stable":
             symmetric = N.T @ here["equation_by_q"] @ N if len(N) == n else K
-            positive = m == 0 or np.linalg.eigvalsh((symmetric + symmetric.T) / 2)[0] > 0
+            positive = m == 0 or np.linalg.eigvalsh((symmetric + symmetric.T) / 2)[0] > rounding
             yield Condition(f"{place}minimum of the energy", equations.may_feed_energy or not positive)
+
+
+def _rounding_of_stiffness(
+    equations: DescribedEquations, here: Mapping[str, Matrix], point: Mapping[str, float], N: Matrix
+) -> float:
+    """Return the stiffness that rounding errors of the forces make by the multipliers."""
+    reactions = equations.names("lambda")
+    loads = equations.at({**point, **dict.fromkeys(reactions, 0.0)})["equation"]
+    error = 0.0
+    for name, slope in zip(reactions, here["equation_by_lambda"].T, strict=True):
+        change = equations.at({**point, name: point[name] + 1.0})["equation_by_q"] - here["equation_by_q"]
+        step = np.finfo(float).eps * np.linalg.norm(loads) / (np.linalg.norm(slope) or 1.0)
+        error += step * np.linalg.norm(N.T @ change @ N)
+    return float(error)
 
 
 def _of(found: Sequence[Mapping[str, Any]], key: str) -> list[Any]:

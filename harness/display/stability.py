@@ -115,7 +115,7 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
     names = list(equilibria.found[0].coordinates)[:SHOWN_COORDINATES] if equilibria.found else []
     table = Table("", *names, "stability", title=title, title_justify="left")
     for each in equilibria:
-        kind = styled(each.stability) if each.isolated else styled(each.stability) + Text(", not isolated")
+        kind = styled(each.stability) if each.isolated else styled(each.stability) + Text(", perhaps not isolated")
         table.add_row(each.name, *(f"{each.coordinates[name]:.8g}" for name in names), kind)
     console.print(table)
     for each in equilibria:
@@ -123,7 +123,7 @@ def show_equilibria(console: "Console", equilibria: "Equilibria") -> None:
             console.print(f"{each.name} exactly: {', '.join(values)}")
     console.print(_number_of(equilibria))
     if equilibria.more:
-        console.print(f"{equilibria.more} more belong to the families of those that are not isolated.")
+        console.print(f"{equilibria.more} more belong to the families of those that are perhaps not isolated.")
     if equilibria.singular:
         starts = f"{equilibria.singular} starts"
         console.print(f"{starts} led to singular configurations or sign changes, which are not classified.")

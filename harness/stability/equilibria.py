@@ -566,8 +566,7 @@ class _Search:
         rows, values, columns = np.linalg.svd(stiffness)
         directions = basis @ columns.T
         lengths = np.max(np.abs(directions) / self._sizes_at(q)[:, None], axis=0)
-        many = (np.repeat(each[:, None], REPETITIONS, axis=1) for each in (q, multipliers))
-        rough = self._equations.at(self._point(*many), self._independent, np.random.default_rng(0))
+        rough = self._rough(q, multipliers)
         changes = np.moveaxis(rough["equation_by_q"], -1, 0)
         off = np.einsum("kij,jk->ik", changes, tangent.shortest(rough["constraint"]))
         forces = np.max(np.abs(rows.T @ basis.T @ (rough["equation"] - off)), axis=1)
@@ -577,8 +576,27 @@ class _Search:
         far = np.tile(steps * lengths > BALANCED, 2)  # where the manifold may be curved
         curved = [self._stiffness_beside(q + step, multipliers, tangent) for step in moved[:, far].T]
         both = ([*straight, *curved], basis.T @ changes @ basis)
-        moving, rounding = (max(np.linalg.norm(each - stiffness) for each in some) for some in both)
-        return float(moving + UNCERTAIN * rounding)
+        moving, rounding = (max(np.linalg.norm(each - stiffness, 2) for each in some) for some in both)
+        moved = multipliers[:, None] + np.diag(self._uncertainty(q, multipliers, rough))
+        reacting = self._at(np.repeat(q[:, None], len(moved), axis=1), moved)["equation_by_q"]
+        changed = np.linalg.norm(basis.T @ np.moveaxis(reacting, -1, 0) @ basis - stiffness, 2, axis=(1, 2))
+        return float(moving + UNCERTAIN * rounding + changed.sum())
+
+    def _rough(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+        """Return arrays of the equations with random rounding errors."""
+        many = (np.repeat(each[:, None], REPETITIONS, axis=1) for each in (q, multipliers))
+        return self._equations.at(self._point(*many), self._independent, np.random.default_rng(0))
+
+    def _uncertainty(self, q: Vector, multipliers: Vector, rough: Mapping[str, Matrix]) -> Vector:
+        """Return the errors of the multipliers, by a Newton step.
+
+        That of a multiplier that is rounding alone is as large as it is.
+        """
+        J, found = self._at(q, multipliers)["constraint_by_q"] * self._sizes, np.zeros_like(multipliers)
+        if np.isfinite(J).all() and np.isfinite(rough["equation"]).all():
+            steps, *_ = np.linalg.lstsq(J.T, self._sizes[:, None] * rough["equation"])
+            found[self._independent] = UNCERTAIN * np.max(np.abs(steps), axis=1)
+        return found
 
     def _stiffness_beside(self, q: Vector, multipliers: Vector, tangent: Tangent) -> Matrix:
         """Return the stiffness on the manifold near a place, infinite where there is none."""
@@ -637,9 +655,9 @@ class _Search:
                 if not left.size:
                     break
         for place in np.flatnonzero(solved):
-            zero = np.zeros_like(multipliers[:, place])
-            loaded = np.any(self._at(q[:, place], zero)["equation"])  # otherwise rounding errors alone are left
-            yield self._zeroed(q[:, place]), multipliers[:, place] if loaded else zero
+            found = q[:, place], multipliers[:, place]
+            known = np.abs(found[1]) > self._uncertainty(*found, self._rough(*found))
+            yield self._zeroed(found[0]), np.where(known, found[1], 0.0)
 
     def _balancing(self, q: Matrix) -> Matrix:
         """Return multipliers for k points, shape (g, k).

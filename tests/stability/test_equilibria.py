@@ -365,6 +365,41 @@ def test_the_fork_of_a_bead_on_a_turning_hoop_is_one_equilibrium():
 
 
 @pytest.mark.parametrize(
+    "constraints",
+    [
+        "x^2 + y^2 - 1, z",
+        "y - x^2, z",
+        "x^2 + y^2 + z^2 - 1, z",
+        "x^2 + y^2 + z^2 - 1, z*(2 + x)",
+        "x^2 + y^2 - 1, z + y",
+    ],
+)
+def test_rounding_errors_of_a_multiplier_were_a_stiffness(constraints):
+    """Truth: the weight does no work along a level curve, at whose places all is in balance."""
+    weight = "10*y + 10*z" if "z + y" in constraints else "10*z"
+    curve = holonom.system(f"""system : holonomic_system(coordinates = [x, y, z],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, potential_energy = {weight}, constraints = [{constraints}])$
+s : holonomic_scene(system, initial_state = [x = 3/5, dot(x) = 0],
+  initial_guess = [y = -4/5, z = 0, dot(y) = 0, dot(z) = 0])$""")
+    found = curve.equilibria()
+    assert len(found)
+    assert {(each.stability, each.isolated) for each in found} == {(Stability.UNDECIDED, False)}
+
+
+def test_a_verdict_by_rounding_errors_of_a_multiplier_is_found_by_the_check():
+    ring = holonom.system("""system : holonomic_system(coordinates = [x, y, z],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, potential_energy = 10*z, constraints = [x^2 + y^2 - 1, z])$
+s : holonomic_scene(system, initial_state = [x = 3/5, y = -4/5, dot(x) = 0], time_span = [0, 1])$""")
+    document = json.loads(json.dumps(published(Publication.EQUILIBRIA, ring.equilibria().document())))
+    assert verify_result(ring.description, document).verdict is Verdict.AGREES
+    document["found"][0] |= {"isolated": True, "stability": "stable"}
+    document["found"][0]["multipliers"]["lambda1"] = -1e-20
+    assert verify_result(ring.description, document).verdict is Verdict.DISAGREES
+    document["found"][0]["isolated"] = False
+    assert verify_result(ring.description, document).verdict is Verdict.DISAGREES
+
+
+@pytest.mark.parametrize(
     ("details", "places"),
     [
         ("potential_energy = x^3", [0]),
