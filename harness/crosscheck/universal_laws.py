@@ -8,8 +8,8 @@ constraints by Maxima is used.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
 
 import sympy as sp
@@ -100,28 +100,39 @@ def _residual_at_next_state(moved: _MovedByLaw, draws: Iterator[Mapping[sp.Symbo
     return None
 
 
+def _under_law(system: MechanicalSystem, law: ControlLaw) -> MechanicalSystem:
+    """Substitute a law before equations are derived."""
+    history = {}  # under u = 0, sqrt(u) has a value and no derivative by u
+    for control, expression in law.controls.items():
+        rate = system.time_derivative(expression)
+        history |= {
+            control: expression,
+            dotted("dot", control): rate,
+            dotted("ddot", control): system.time_derivative(rate),
+        }
+    return replace(
+        system,
+        kinetic_energy=system.kinetic_energy.xreplace(history),
+        potential_energy=system.potential_energy.xreplace(history),
+        forces=tuple(force.xreplace(history) for force in system.forces),
+        constraints=tuple(constraint.xreplace(history) for constraint in system.constraints),
+    )
+
+
 class _MovedByLaw:
     """The equations of a system with a law and parameter values substituted."""
 
     def __init__(self, system: MechanicalSystem, values: Mapping[sp.Symbol, sp.Expr], law: ControlLaw) -> None:
-        equations = IndependentEquations(system)
-        history = dict(values)
-        for control, expression in law.controls.items():
-            rate = system.time_derivative(expression)
-            history |= {
-                control: expression,
-                dotted("dot", control): rate,
-                dotted("ddot", control): system.time_derivative(rate),
-            }
+        moved = _under_law(system, law)
+        equations = IndependentEquations(moved)
 
-        def under_law(expressions: Sequence[sp.Expr]) -> tuple[sp.Expr, ...]:
-            return tuple(expression.xreplace(history).xreplace(values) for expression in expressions)
+        def valued(expressions: Iterable[sp.Expr]) -> tuple[sp.Expr, ...]:
+            return tuple(expression.xreplace(values) for expression in expressions)
 
-        constraints, rates = under_law(system.constraints), under_law(equations.constraint_derivatives)
-        positive = under_law(law.positive)
-        laws = tuple(expression.xreplace(values) for expression in law.controls.values())
+        constraints, rates = valued(moved.constraints), valued(equations.constraint_derivatives)
+        positive, laws = valued(law.positive), valued(law.controls.values())
         self.multipliers = system.pushing_multipliers
-        self.motion = LinearEquations(equations.bordered.unknowns, under_law(equations.bordered.residuals))
+        self.motion = LinearEquations(equations.bordered.unknowns, valued(equations.bordered.residuals))
         self.constraints, self.rates = Steps(constraints), Steps(rates)
         self.positions = Gradients(constraints, system.coordinates)
         self.speeds = Gradients(rates, system.velocities)

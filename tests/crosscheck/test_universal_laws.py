@@ -94,3 +94,13 @@ def test_times_are_drawn_within_the_span():
     drawn = [_within((sp.Integer(10), sp.Rational(21, 2)), {t: sp.Rational(k, 7), x: k}, t) for k in range(-14, 15)]
     assert [point[t] for point in drawn] == [10 + sp.Rational(k + 14, 56) for k in range(-14, 15)]
     assert [point[x] for point in drawn] == [*range(-14, 15)]
+
+
+ROOT = system("x z", (-dotted("dot", x), sp.Integer(0)), [z - sp.sqrt(u - t**2) * x])
+
+
+@pytest.mark.parametrize(
+    ("offset", "verdict"), [(0, Verdict.AGREES), (1, Verdict.DISAGREES)], ids=["at the end", "inside"]
+)
+def test_law_at_the_end_of_a_domain_is_put_in_before_derivatives(offset, verdict):
+    assert verify_law(ROOT, {}, ControlLaw({u: t**2 + offset})).verdict is verdict
