@@ -42,7 +42,10 @@
     (cond ((some #'separated-otherwise-p cells)
            ($refuse '$line_without_comma name line (shortened-text (trimmed text))))
           (bad ($refuse '$number_in_table_file name line (shortened-text (nth bad cells))))
+          ((some #'beyond-double-p numbers) ($refuse '$large_number_in_table_file name line))
           ((/= (length numbers) 2) ($refuse '$columns_of_table_file name line (length numbers))))))
+
+(defun beyond-double-p (x) (> (abs x) (rational most-positive-double-float)))
 
 (defun require-later (before cells numbers name line)
   "BEFORE is the time of the row before, with its text; nil for the first row."
