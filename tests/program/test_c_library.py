@@ -4,6 +4,7 @@ import ctypes
 import re
 import shutil
 import subprocess
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -270,6 +271,28 @@ scene : holonomic_scene(system, initial_state = [])$""")
             q, v = size * np.array([np.cos(angle), np.sin(angle)]), np.zeros(2)
             assert project(0.0, q, v, np.zeros(0), np.zeros(0)) == 0
             assert q == pytest.approx([0, 0], abs=1e-150)
+
+
+@pytest.mark.parametrize(
+    ("constraint", "control"), [("sin(x + l) - u", np.sin), ("(x + l)^2 - u^2", np.abs), ("exp(x + l) - u", np.exp)]
+)
+def test_a_place_that_is_zero_by_other_inputs_was_never_near_enough(
+    write_scene, tmp_path, c_compiler, constraint, control
+):
+    file = write_scene(f"""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [l],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [{constraint}])$
+scene : holonomic_scene(system, control_law = [u = 1/2], parameter_values = [l = 3/10],
+  initial_state = [y = 1, dot(y) = 0], initial_guess = [x = 1/2, dot(x) = 0])$""")
+    directory = write_library(tmp_path / "library", file, "zero", "l")
+    run("cc", "-std=c11", "-shared", "-fPIC", "zero.c", "-lm", "-o", "zero.so", directory=directory)
+    project = ctypes.CDLL(str(directory / "zero.so")).zero_project
+    project.argtypes = [ctypes.c_double, *[DOUBLES] * 4]
+    rng = np.random.default_rng(1)
+    for length, size in product(rng.uniform(0.05, 1.2, 100), (0.0, 1e-17, 1e-9, 0.01)):
+        q = np.array([size * rng.normal(), rng.integers(2)], dtype=float)
+        assert project(0.0, q, np.zeros(2), np.array([control(length), 0.0, 0.0]), np.array([length])) == 0
+        assert q[0] == pytest.approx(0, abs=1e-15)
 
 
 def test_the_law_and_the_values_are_those_of_the_scene(pendulum):

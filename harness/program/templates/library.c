@@ -87,9 +87,39 @@ static void lengths_of(const double *x, double *lengths)
     for (int i = 0; i < @{parts}; i++) lengths[i] = sqrt(lengths[i]);
 }
 
+/* The largest size of numbers, and the numbers with rounding errors. */
+static double round_off(const double *x, double *rounded, int count, int pattern)
+{
+    double largest = 0;
+    for (int i = 0; i < count; i++) {
+        largest = fmax(largest, fabs(x[i]));
+        rounded[i] = x[i]*(1 + ((5*i + pattern) % 8 - 3.5)*DBL_EPSILON);
+    }
+    return largest;
+}
+
+/* For the corrections dq, the largest change of each part within rounding errors of all inputs. Where that is no small
+   part of the inputs, as in a singular configuration, it is zero. */
+static void rounding_of_parts(double t, const double *q, const double *v, const double *u, const double *p,
+    const double *dq, double *rounding)
+{
+    double x[@{n}], other[@{n}], dv[@{n}], w[3*@{m} + 1], values[@{k} + 1], lengths[@{parts}];
+    for (int i = 0; i < @{parts}; i++) rounding[i] = 0;
+    for (int pattern = 0; pattern < 4; pattern++) {
+        double largest = round_off(q, x, @{n}, pattern);
+        largest = fmax(largest, round_off(u, w, 3*@{m}, 3*pattern + 1));
+        largest = fmax(largest, round_off(p, values, @{k}, 6*pattern + 2));
+        corrections(t*(1 + pattern*DBL_EPSILON), x, v, w, values, other, dv);
+        for (int s = 0; s < @{n}; s++) other[s] -= dq[s];
+        lengths_of(other, lengths);
+        for (int i = 0; i < @{parts}; i++)
+            if (lengths[i] <= sqrt(DBL_EPSILON)*largest) rounding[i] = fmax(rounding[i], lengths[i]);
+    }
+}
+
 int @{name}_project(double t, double *q, double *v, const double *u, const double *p)
 {
-    double x[@{n}], dq[@{n}], dv[@{n}], step[@{parts}], next[@{parts}], size[@{parts}];
+    double x[@{n}], dq[@{n}], dv[@{n}], step[@{parts}], next[@{parts}], size[@{parts}], rounding[@{parts}];
     int converged[@{parts}] = {0}, left = @{parts};
     memcpy(x, q, sizeof x);
     corrections(t, x, v, u, p, dq, dv);
@@ -107,8 +137,11 @@ int @{name}_project(double t, double *q, double *v, const double *u, const doubl
         lengths_of(dq, next);
     }
     lengths_of(x, size);
-    for (int i = 0; i < @{parts}; i++)
-        if (!(step[i] <= sqrt(DBL_EPSILON)*size[i])) return 1;
+    for (int i = 0; i < @{parts}; i++) {
+        if (step[i] <= sqrt(DBL_EPSILON)*size[i]) continue;
+        rounding_of_parts(t, x, v, u, p, dq, rounding); /* as at a solution that is zero */
+        if (!(next[i] <= 16*rounding[i])) return 1;
+    }
     for (int s = 0; s < @{n}; s++)
         if (!isfinite(dv[s])) return 1;
     for (int s = 0; s < @{n}; s++) q[s] = x[s], v[s] += dv[s];
