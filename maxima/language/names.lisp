@@ -14,6 +14,10 @@
 
 (defun $plain_name (x) (and ($symbolp x) (not ($constantp x)) (not (member x '(t nil)))))
 
+(defun $writable_name (x)
+  "Letters, digits, _ and %, and what is not ASCII: no character that Maxima writes with a backslash."
+  (every #'(lambda (c) (or (alphanumericp c) (find c "_%") (> (char-code c) 127))) (characters-of-name x)))
+
 (defun $reserved_name (x)
   "lambda1, lambda2, ..."
   (and (symbolp x) (numbered-name-p (characters-of-name x) "lambda")))
