@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache, partial
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import sympy as sp
 from mpmath import mp
@@ -21,6 +21,7 @@ from .points import FUNCTIONS
 Number = mp.mpf | mp.mpc
 Numbers = list[Number | None]
 Values = Mapping[sp.Symbol, Number | None]
+T = TypeVar("T")
 
 LARGEST_EXPONENT = 10**8
 """Largest exponent of which a power is formed."""
@@ -76,6 +77,27 @@ class Steps:
         for step in self._steps:
             value = _taken(step, found) if isinstance(step, Step) else values.get(step)
             found.append(None if real and isinstance(value, mp.mpc) else value)
+        return [found[place] for place in self._results]
+
+    def applied(self, of_symbol: Callable[[sp.Symbol], T], apply: Callable[[Callable, list[T]], T]) -> list[T]:
+        """Evaluate the expressions in another arithmetic.
+
+        Parameters
+        ----------
+        of_symbol : callable
+            Value of a symbol.
+        apply : callable
+            Value of a function, given the values of its arguments.
+
+        Returns
+        -------
+        list of T
+            One for each expression.
+        """
+        found: list[T] = []
+        for step in self._steps:
+            known = isinstance(step, Step)
+            found.append(apply(step.function, [found[i] for i in step.places]) if known else of_symbol(step))
         return [found[place] for place in self._results]
 
     def real_at(self, values: Values) -> list[mp.mpf]:
@@ -156,11 +178,11 @@ def _function(part: sp.Expr) -> Callable[..., Number | None]:
         case sp.NumberSymbol():
             return lambda: mp.mpf(part._to_mpmath(mp.prec))
         case sp.Add():
-            return lambda *terms: mp.fsum(terms)
+            return total
         case sp.Mul():
-            return lambda *factors: mp.fprod(factors)
+            return product
         case sp.Pow(args=(_, sp.Integer() as exponent)):
-            return partial(_whole_power, int(exponent))
+            return partial(whole_power, int(exponent))
         case sp.Pow():
             return _power
         case sp.Function() if part.func in FUNCTIONS:
@@ -169,22 +191,77 @@ def _function(part: sp.Expr) -> Callable[..., Number | None]:
             return lambda *_: None
 
 
-def _whole_power(exponent: int, base: Number) -> Number | None:
-    return base**exponent if abs(exponent) <= LARGEST_EXPONENT else None
+def total(*terms: Number) -> Number:
+    """Return the sum of numbers.
+
+    Parameters
+    ----------
+    *terms : Number
+        Numbers to add.
+
+    Returns
+    -------
+    Number
+    """
+    return mp.fsum(terms)
+
+
+def product(*factors: Number) -> Number:
+    """Return the product of numbers.
+
+    Parameters
+    ----------
+    *factors : Number
+        Numbers to multiply.
+
+    Returns
+    -------
+    Number
+    """
+    return mp.fprod(factors)
+
+
+def whole_power(exponent: int, base: Number) -> Number:
+    """Return a power with a whole exponent.
+
+    Parameters
+    ----------
+    exponent : int
+        The exponent.
+    base : Number
+        The base.
+
+    Returns
+    -------
+    Number
+
+    Raises
+    ------
+    OverflowError
+        The exponent is too large.
+    """
+    _require_size(exponent, LARGEST_EXPONENT)
+    return base**exponent
+
+
+def _require_size(number: Number, largest: int) -> None:
+    if abs(number) > largest:
+        raise OverflowError
 
 
 def _power(base: Number, exponent: Number) -> Number | None:
     if not base:
         return mp.zero if mp.re(exponent) > 0 else None
-    return mp.power(base, exponent) if abs(exponent * mp.log(base)) <= LARGEST_EXPONENT else None
+    _require_size(exponent * mp.log(base), LARGEST_EXPONENT)
+    return mp.power(base, exponent)
 
 
 def _applied(kind: type, *arguments: Number) -> Number | None:
     largest = LIMITS.get(kind)
     if largest is None:
         return FUNCTIONS[kind](*arguments)
-    if any(abs(argument) > largest for argument in arguments):
-        return None
+    for argument in arguments:
+        _require_size(argument, largest)
     return _remembered(kind, mp.prec, *arguments)
 
 

@@ -10,6 +10,7 @@ import sympy as sp
 from mpmath import mp
 
 from .evaluation import Number, Steps, Values
+from .rounding import BoundedValues, Result, bounded, solution
 
 
 @dataclass(frozen=True)
@@ -57,3 +58,23 @@ class LinearEquations:
                 solution = mp.lu_solve(mp.matrix(rows), -mp.matrix(found[order * order :]))
                 return dict(zip(self.unknowns, solution, strict=True))
         return dict.fromkeys(self.unknowns)
+
+    def bounded_solution(self, values: BoundedValues) -> dict[sp.Symbol, Result]:
+        """Return the solution at a point with bounds on its rounding errors.
+
+        Parameters
+        ----------
+        values : BoundedValues
+            Values of the other symbols.
+
+        Returns
+        -------
+        dict of Symbol to Result
+            Value of each unknown.
+        """
+        order = len(self.unknowns)
+        found = bounded(self._steps, values)
+        negative = dict(zip(self.unknowns, found[order * order :], strict=True))
+        right = bounded(Steps([-x for x in self.unknowns]), negative)
+        rows = [found[i * order : (i + 1) * order] for i in range(order)]
+        return dict(zip(self.unknowns, solution(rows, right), strict=True))

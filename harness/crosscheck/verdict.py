@@ -1,8 +1,8 @@
 """Compare two expressions at points, and then by proof.
 
-A point is evaluated in two precisions. A digit that both have in common belongs to the value, and a difference common
-to both is real. A difference that shrinks with the precision is a rounding error of zero. No tolerance is needed, and
-terms of any size count.
+A point is evaluated in two precisions. A difference that shrinks with the precision is a rounding error of zero. No
+tolerance is needed, and terms of any size count. A difference common to both is real if it exceeds the bound on the
+rounding errors at the point (`rounding`). If it does not, the point decides nothing.
 
 A comparison may need the solution of linear equations. At a point they are solved numerically. In a proof a
 certificate replaces the solution: the record's own closed form, which is substituted into the equations. If all
@@ -24,13 +24,14 @@ from mpmath import mp
 
 from ..language import translatable
 from .branches import Branches, branches_of
-from .digits import CONFIRMING_DIGITS, DIGITS, POINTS, WORKING_DIGITS
+from .digits import BOUNDING_DIGITS, CONFIRMING_DIGITS, DIGITS, POINTS, WORKING_DIGITS
 from .draws import Draws, Point
 from .evaluation import Number, Steps, Values
 from .independent_functions import with_independent_functions
 from .linear import LinearEquations
 from .normal_form import is_identically_zero
 from .report import CheckResult, Verdict
+from .rounding import Bounded, NoValue, Result, bounded, rational
 
 SHOWN = 12
 """Digits of two values that differ; more if these are equal."""
@@ -91,7 +92,10 @@ class Found(Enum):
     DIFFERENT = auto()
     UNDERIVED = auto()  # only the independent evaluation has a value
     UNSTABLE = auto()  # the derived value is lost in rounding
-    NOTHING = auto()  # the independent evaluation has no value
+    NOTHING = auto()  # the independent evaluation has no value, or the digits decide nothing
+
+
+DIFFERENCES = (Found.DIFFERENT, Found.UNDERIVED)
 
 
 def verify(comparison: Comparison, seed: str) -> CheckResult:
@@ -184,7 +188,7 @@ class _Verification:
             for i, (found, left, right) in enumerate(self.evaluation.findings(point)):
                 if found is Found.EQUAL:
                     self.equal[i] += 1
-                elif found in (Found.DIFFERENT, Found.UNDERIVED) and self._is_in_domain(i, point):
+                elif found in DIFFERENCES and self._is_in_domain(i, point):
                     return self._describe(i, found, left, right, point)
                 elif found is Found.UNSTABLE:
                     self.lost[i] = self._describe(i, found, left, right, point)
@@ -214,8 +218,9 @@ class _Verification:
         return translatable("%(difference)s at %(where)s", difference=difference, where=where) if where else difference
 
     def _too_few(self, fewest: int) -> CheckResult:
-        for equal, lost in zip(self.equal, self.lost, strict=True):
-            if lost and not equal:
+        equal, _ = self._independently_equal() if any(self.lost) else (self.equal, False)
+        for lost, *agreeing in zip(self.lost, self.equal, equal, strict=True):
+            if lost and not any(agreeing):
                 return CheckResult(Verdict.DISAGREES, DIGITS, ATTEMPTS * self.points, lost)
         reason = (
             translatable("only %(points)s regular points were found among those drawn at random", points=fewest)
@@ -225,9 +230,14 @@ class _Verification:
         return CheckResult(Verdict.UNDECIDED, None, fewest or None, reason)
 
     def _agrees_independently(self) -> bool:
-        """Return True if the pairs agree with functions independent of their arguments.
+        equal, differs = self._independently_equal()
+        return not differs and min(equal) >= INDEPENDENT_POINTS
 
-        The functions are exp, sin and the like.
+    def _independently_equal(self) -> tuple[list[int], bool]:
+        """Compare the pairs with functions independent of their arguments.
+
+        The functions are exp, sin and the like. The result is the number of points at which each pair agrees, and True
+        if one differs.
         """
         comparison = with_independent_functions(self.comparison)
         evaluation = Evaluation(comparison)
@@ -237,10 +247,10 @@ class _Verification:
             for i, (found, _, _) in enumerate(evaluation.findings(draws.point(attempt), complex_too=True)):
                 equal[i] += found is Found.EQUAL
                 if found is Found.DIFFERENT:
-                    return False
+                    return equal, True
             if min(equal) >= INDEPENDENT_POINTS:
-                return True
-        return False
+                break
+        return equal, False
 
 
 class Evaluation:
@@ -281,8 +291,11 @@ class Evaluation:
             for i in lucky:
                 coarse[0][i], coarse[1][i] = again[0][i], again[1][i]
         with mp.workdps(CONFIRMING_DIGITS):
-            for left, right, left_again, right_again in zip(*coarse, *fine, strict=True):
-                yield _finding((left, left_again), (right, right_again), complex_too), left_again, right_again
+            found = [
+                _finding((left, left_again), (right, right_again), complex_too)
+                for left, right, left_again, right_again in zip(*coarse, *fine, strict=True)
+            ]
+        yield from zip(self._confirmed(found, point, complex_too), *fine, strict=True)
 
     def values_of(self, expressions: Sequence[sp.Expr], point: Point) -> Sequence[Number | None]:
         """Return the values of other expressions at a point, or None if one has no value.
@@ -307,6 +320,28 @@ class Evaluation:
             values = self._known(point)
             return self._left.at(values), self._right.at(values)
 
+    def _confirmed(self, found: Sequence[Found], point: Point, complex_too: bool) -> list[Found]:
+        """Return the results without the differences that may be rounding errors."""
+        differing = {i for i, each in enumerate(found) if each in DIFFERENCES}
+        confirmed = list(found)
+        for digits in BOUNDING_DIGITS:
+            if not differing:
+                break
+            with mp.workdps(digits):
+                sides = list(zip(*self._bounded(point), strict=True))
+                for i in differing:
+                    confirmed[i] = _bounded_finding(*sides[i], complex_too)
+            differing = {i for i in differing if confirmed[i] not in DIFFERENCES}
+        return confirmed
+
+    def _bounded(self, point: Point) -> tuple[list[Result], list[Result]]:
+        values: dict[sp.Symbol, Result] = {x: rational(number) for x, number in point.items()}
+        for symbol, meaning in self._given:
+            values[symbol] = bounded(meaning, values)[0]
+        for equations in self._solves:
+            values |= equations.bounded_solution(values)
+        return bounded(self._left, values), bounded(self._right, values)
+
     def _known(self, point: Point) -> dict[sp.Symbol, Number | None]:
         values: dict[sp.Symbol, Number | None] = {x: mp.mpf(number.p) / number.q for x, number in point.items()}
         for symbol, meaning in self._given:
@@ -327,6 +362,27 @@ def _finding(left: Sequence[Number | None], right: Sequence[Number | None], comp
     if not _is_same(coarse, fine):
         return Found.UNSTABLE if abs(fine) > abs(coarse) else Found.NOTHING  # what shrinks may be a root of rounding
     return Found.DIFFERENT if complex_too or _is_real(*left) else Found.UNDERIVED
+
+
+def _bounded_finding(left: Result, right: Result, complex_too: bool) -> Found:
+    """Return a difference only if it exceeds the bounds on the rounding errors."""
+    if isinstance(right, NoValue) or not (complex_too or _may_be_real(right)):
+        return Found.NOTHING
+    match left:
+        case NoValue.TOO_LARGE:
+            return Found.NOTHING
+        case NoValue.LOST:
+            return Found.UNSTABLE
+        case NoValue.UNDEFINED:
+            return Found.UNDERIVED
+    if not (complex_too or _may_be_real(left)):
+        return Found.UNDERIVED
+    is_real = abs(left.value - right.value) > left.error + right.error
+    return Found.DIFFERENT if is_real else Found.NOTHING
+
+
+def _may_be_real(number: Bounded) -> bool:
+    return abs(mp.im(number.value)) <= number.error
 
 
 def _is_luck(left: Number | None, right: Number | None, left_again: Number | None, right_again: Number | None) -> bool:
@@ -376,7 +432,7 @@ def _verify_rounded(comparison: Comparison) -> CheckResult:
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
             explained = mp.mpf(10) ** -DIGITS * mp.fsum(abs(change) for change in changes if change is not None)
             largest = max(abs(each) for each in (left, right, *sizes) if each is not None)
-            noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * largest
+            noise = mp.mpf(10) ** (DIGITS - CONFIRMING_DIGITS) * largest + _error(difference, values)
             if abs(found) > explained + noise:
                 detail = translatable(
                     "%(quantity)s: the record gives %(derived)s, where %(known)s belongs",
@@ -386,6 +442,13 @@ def _verify_rounded(comparison: Comparison) -> CheckResult:
                 )
                 return CheckResult(Verdict.DISAGREES, DIGITS, 1, detail)
     return CheckResult(Verdict.AGREES, DIGITS, 1)
+
+
+def _error(expression: sp.Expr, values: Values) -> mp.mpf:
+    """Return a bound on the rounding error of an expression, zero if none is known."""
+    known = {x: Bounded(value, abs(value) * mp.ldexp(1, -mp.prec)) for x, value in values.items() if value is not None}
+    found = bounded(Steps([expression]), known)[0]
+    return found.error if isinstance(found, Bounded) else mp.zero
 
 
 def _pairs_of_numbers(comparison: Comparison) -> tuple[Pair, ...]:
