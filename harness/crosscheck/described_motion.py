@@ -155,6 +155,18 @@ class DescribedMotion:
         switches = {name: (mp.mpf(name in called),) for name in self.system.switches}
         return {name: (number(tree),) for name, tree in trees.items()} | switches
 
+    def all_parameters(self) -> dict[str, Polynomial]:
+        """Return values of all parameters, any number for those without a value.
+
+        A motion that the record follows does not depend on these.
+
+        Returns
+        -------
+        dict of str to Polynomial
+            As `parameters`.
+        """
+        return {name: (mp.sqrt(place),) for place, name in enumerate(self.system.parameters, 2)} | self.parameters()
+
     def number_of(self, tree: Tree) -> mp.mpf:
         """Return the value of an expression of parameters alone.
 

@@ -186,7 +186,7 @@ def _compared(
     Prescribed reactions are among the equations.
     """
     taylor, time = Taylor(ORDER), number(series.t0)
-    curve: Values = motion.parameters() | motion.law.at(Taylor(ORDER + 3), time, motion.parameters())
+    curve: Values = motion.all_parameters() | motion.law.at(Taylor(ORDER + 3), time, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
     curve["t"] = (time, mp.one)
     multipliers = {name: tuple(numbers(row)) for name, row in series.multipliers.items()}
@@ -393,7 +393,7 @@ def _values_of_servo(
         yield from _values_of_rows(series.multipliers, reactions, largest)
         yield from _values_of_rows(series.controls, law | computed, largest)
     multipliers = [computed[name] for name in motion.system.multipliers]
-    curve = motion.parameters() | found | law | curve
+    curve = motion.all_parameters() | found | law | curve
     yield from _values_of_forces(motion, taylor, curve, multipliers, series.constraint_forces if series else {})
     yield from _values_of_equations(motion, taylor, curve, multipliers, lambda curve, _: curve)
 

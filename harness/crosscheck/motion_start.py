@@ -119,7 +119,7 @@ def _curve(motion: DescribedMotion, state: State) -> dict[str, Polynomial]:
         motion.system.controls if motion.scene.servo_trees else (), (mp.zero,)
     )  # not in constraints
     forcing |= dict.fromkeys(motion.reacting, (mp.one,))
-    return motion.parameters() | forcing | law | places | {"t": (state["t"], mp.one)}
+    return motion.all_parameters() | forcing | law | places | {"t": (state["t"], mp.one)}
 
 
 class _Search:

@@ -142,7 +142,8 @@ class Tape:
         """
         values: list[Polynomial] = [()] * len(self.operations)
         for name, place in self.names.items():
-            values[place] = _quantity(name, known)
+            if needed is None or place in needed:
+                values[place] = _quantity(name, known)
         for place, number in self.numbers.items():
             values[place] = (mp.mpf(number.numerator) / number.denominator,)
         for place, (head, arguments) in enumerate(self.operations):

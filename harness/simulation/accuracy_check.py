@@ -107,7 +107,7 @@ def finest(precision: Precision) -> float:
     Returns
     -------
     float
-        At least the smallest normal float: smaller errors are not told apart.
+        At least the smallest normal float: smaller errors are zero to floats.
     """
     return max(FINEST * float(precision.rounding) / float_info.epsilon, float_info.min)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import holonom
 from holonom.crosscheck.motion_program import ScenePrograms
 from holonom.crosscheck.motion_series import ORDER, SceneSeries, _expanded, verify_series, verify_servo
 from holonom.crosscheck.motions import read_motions
@@ -138,3 +139,14 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$""")
     source = Source(scene)
     found = read_motions(source.description(), ask_for_check(source, {})).series
     assert [each.found.verdict for each in verify_series(source.description(), found)] == [Verdict.AGREES]
+
+
+def test_a_parameter_that_no_motion_contains_needs_no_value():
+    """Omega belongs to an effect that the scene leaves out; the check of an example ended with an error."""
+    report = holonom.system("""
+system : holonomic_system(coordinates = [x, y], parameters = [m, Omega], switches = [turning],
+  kinetic_energy = [motion = m*((dot(x) - turning*Omega*y)^2 + (dot(y) + turning*Omega*x)^2)/2],
+  constraints = [x^2 + y^2 - 1])$
+scene : holonomic_scene(system, parameter_values = [m = 1], effects = [motion],
+  initial_state = [x = 3/5, y = 4/5, dot(x) = 4/5], time_span = [0, 1])$""").check()
+    assert {each.verdict for each in report.verdicts} <= {Verdict.PROVED, Verdict.AGREES, Verdict.NOTHING}
