@@ -97,19 +97,19 @@ def trusted(errors: Mapping[str, Vector], tol: float, steps: NDArray[np.int64]) 
 
 
 def finest(precision: Precision) -> float:
-    """Return the relative error of a step that rounding alone may make.
+    """Return the relative error of a step that rounding may make.
 
     Parameters
     ----------
     precision : Precision
-        Numbers of the motion.
+        Numbers of the motion. Projections onto the constraints are right to its sure digits.
 
     Returns
     -------
     float
-        At least the smallest normal float: smaller errors are zero to floats.
+        At least the smallest normal float.
     """
-    return max(FINEST * float(precision.rounding) / float_info.epsilon, float_info.min)
+    return max(10.0**-precision.sure_digits, float_info.min)
 
 
 def expected(tol: float, steps: int | NDArray[np.int64], least: float = FINEST) -> float | Vector:

@@ -10,7 +10,7 @@ import pytest
 from holonom.program.motion_program import Call, Name, Operation, Program
 from holonom.program.precision import read_precision
 from holonom.program.request import Solve
-from holonom.simulation.accuracy_check import expected, finest, may_hide, trusted, violations
+from holonom.simulation.accuracy_check import FINEST, expected, finest, may_hide, trusted, violations
 
 EXPECTED = {"position": 1e-16, "velocity": 1e-15, "energy": 1e-13}
 
@@ -36,7 +36,8 @@ def test_errors_may_grow_with_tolerance_and_steps_and_rounding_is_no_error(tol, 
 
 def test_more_digits_are_checked_to_the_last_and_residuals_in_double_precision():
     quadruple = finest(read_precision("quadruple"))
-    assert quadruple == pytest.approx(1e-15 * 2.0**-60)
+    assert quadruple == pytest.approx(1e-33)
+    assert finest(read_precision("double")) == pytest.approx(FINEST)
     errors = {"position": 1e-14, "velocity": 1e-14, "energy": 1e-20}
     assert not list(violations(errors, 2e-34, 50))
     assert [violation.quantity for violation in violations(errors, 2e-34, 50, quadruple)] == ["energy"]
