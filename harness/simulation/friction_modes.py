@@ -135,6 +135,7 @@ class FrictionModes:
         tried = self._tried = [*self.rough, *self._reactions]
         self._branches = [dict(zip(tried, each, strict=True)) for each in product((1, -1), repeat=len(tried))]
         self._sides = {name: np.array([float(branch[name]) for branch in self._branches]) for name in tried}
+        self._sides_as_inputs = list(map(self._precision.numbers, self._sides.values()))
         known = {name: sign for name, sign in self._pattern.items() if name not in tried}
         return affine_terms(problem, known, self._zeros, self._unknown)
 
@@ -251,7 +252,7 @@ class FrictionModes:
         rows, k = inputs.shape
         given = zeros(self._precision, rows + len(self._sides), len(self._branches), k)
         given[:rows] = inputs[:, None]
-        for row, sides in zip(given[rows:], self._sides.values(), strict=True):
+        for row, sides in zip(given[rows:], self._sides_as_inputs, strict=True):
             row[...] = sides[:, None]
         given = given.reshape(len(given), -1)
         values, k = dict(zip(self._outputs, as_floats(self._function(given)), strict=True)), given.shape[1]

@@ -53,6 +53,12 @@ scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 3], time_span =
     assert np.abs(motion["dot(x)"][1:]).max() < 1e-12
 
 
+def test_friction_with_a_reaction_in_more_digits_was_an_internal_error():
+    incline = of_text(INCLINE.replace("VELOCITY", "2"))
+    many, double = (incline.simulate(until="1/5", samples=2, precision=each) for each in ("30", "double"))
+    assert float(str(many["x"][-1])) == pytest.approx(double["x"][-1], rel=1e-13)
+
+
 BELT = """
 system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + 2*dot(z)^2)/2,
   forces = [-2*x - (1 + exp(-3*abs(dot(x) - dot(z))))*signum(dot(x) - dot(z)),
