@@ -39,7 +39,7 @@ def scene(request):
 motion : holonomic_scene(system, initial_state = [x = 1/2, dot(x) = 1], time_span = [0, 1])$""")
 
 
-@pytest.mark.parametrize("seed", ["1", "q1"])
+@pytest.mark.parametrize("seed", ["1", pytest.param("q1", marks=pytest.mark.long)])
 def test_true_record_agrees(scene, seed):
     report = check_record(scene.record, scene.description, seed)
     assert [found for found in report.verdicts if found.verdict in UNDESIRED] == []
@@ -75,9 +75,9 @@ def drawn_wrong_record(record, change, seed):
     return dataclasses.replace(record, derivations=(dataclasses.replace(derived, equations=equations),)), changed.id
 
 
-@pytest.mark.parametrize("change", CHANGES.values(), ids=CHANGES)
-def test_record_with_a_drawn_wrong_term_disagrees(scene, change):
-    for seed in ("1", "q1"):
-        wrong, name = drawn_wrong_record(scene.record, change, seed)
-        verdicts = check_record(wrong, scene.description, seed).verdicts
-        assert Verdict.DISAGREES in {each.verdict for each in verdicts if each.id == name}
+@pytest.mark.parametrize("seed", ["1", *(pytest.param(each, marks=pytest.mark.long) for each in "234")])
+def test_record_with_a_drawn_wrong_term_disagrees(scene, seed):
+    change = random.Random(str(scene.record) + seed).choice([*CHANGES.values()])
+    wrong, name = drawn_wrong_record(scene.record, change, seed)
+    verdicts = check_record(wrong, scene.description, seed).verdicts
+    assert Verdict.DISAGREES in {each.verdict for each in verdicts if each.id == name}

@@ -381,7 +381,7 @@ def test_rounding_errors_of_a_multiplier_were_a_stiffness(constraints):
   kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, potential_energy = {weight}, constraints = [{constraints}])$
 s : holonomic_scene(system, initial_state = [x = 3/5, dot(x) = 0],
   initial_guess = [y = -4/5, z = 0, dot(y) = 0, dot(z) = 0])$""")
-    found = curve.equilibria()
+    found = curve.equilibria(starts=40)
     assert len(found)
     assert {(each.stability, each.isolated) for each in found} == {(Stability.UNDECIDED, False)}
 
