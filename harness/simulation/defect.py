@@ -11,6 +11,7 @@ reported.
 """
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from math import ceil
 from typing import Any
 
@@ -47,11 +48,16 @@ class DefectControl:
 
     def __init__(self, span: Any, precision: Precision) -> None:
         self._span, self._rounding = float(span), ROUNDED * float(precision.rounding)
-        points = points_for(precision)
-        self._open = gauss_legendre(points, precision)
+        self._precision, self.error = precision, 0.0
+
+    @cached_property
+    def _open(self) -> Rule:
+        return gauss_legendre(points_for(self._precision), self._precision)
+
+    @cached_property
+    def _closed(self) -> Rule:
         # with both ends: a step may end just behind the place where a force begins
-        self._closed = gauss_lobatto(points + 2, precision)
-        self.error = 0.0
+        return gauss_lobatto(points_for(self._precision) + 2, self._precision)
 
     def take(self, step: Step) -> None:
         """Compare the states of a step with its accelerations if the step is long.
