@@ -10,7 +10,7 @@ import sympy as sp
 from mpmath import mp
 
 from .evaluation import Number, Steps, Values
-from .rounding import BoundedValues, Result, bounded, solution
+from .rounding import BoundedValues, Result, bounded, negative, solution
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,6 @@ class LinearEquations:
         """
         order = len(self.unknowns)
         found = bounded(self._steps, values)
-        negative = dict(zip(self.unknowns, found[order * order :], strict=True))
-        right = bounded(Steps([-x for x in self.unknowns]), negative)
         rows = [found[i * order : (i + 1) * order] for i in range(order)]
+        right = list(map(negative, found[order * order :]))
         return dict(zip(self.unknowns, solution(rows, right), strict=True))

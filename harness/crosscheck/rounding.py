@@ -145,6 +145,21 @@ def solution(rows: Sequence[Sequence[Result]], right: Sequence[Result]) -> list[
     return found[::-1]
 
 
+def negative(number: Result) -> Result:
+    """Return a number with the opposite sign.
+
+    Parameters
+    ----------
+    number : Result
+        The number.
+
+    Returns
+    -------
+    Result
+    """
+    return number if isinstance(number, NoValue) else Bounded(-number.value, number.error)
+
+
 def _unit() -> mp.mpf:
     return mp.ldexp(1, -mp.prec)
 
@@ -178,8 +193,7 @@ def _quotient(a: Bounded, b: Bounded) -> Bounded:
 def _less_product(a: Bounded, b: Bounded, c: Bounded) -> Bounded:
     if b.is_zero or c.is_zero:
         return a
-    bc = _product(b, c)
-    return _total([a, Bounded(-bc.value, bc.error)])
+    return _total([a, negative(_product(b, c))])
 
 
 def _whole_power(power: partial, base: Bounded) -> Bounded:

@@ -454,6 +454,8 @@ class _Search:
             q = same.chosen(q)
             if any(self._close(q, other.q, same) for other in known):
                 continue
+            known_multipliers = np.abs(multipliers) > self._uncertainty(q, multipliers, self._rough(q, multipliers))
+            multipliers = np.where(known_multipliers, multipliers, 0.0)
             stiffness = self._stiffness(q, multipliers) if self._is_between_switchings(q) else None
             if stiffness is None:
                 singular.append(q)
@@ -655,9 +657,7 @@ class _Search:
                 if not left.size:
                     break
         for place in np.flatnonzero(solved):
-            found = q[:, place], multipliers[:, place]
-            known = np.abs(found[1]) > self._uncertainty(*found, self._rough(*found))
-            yield self._zeroed(found[0]), np.where(known, found[1], 0.0)
+            yield self._zeroed(q[:, place]), multipliers[:, place]
 
     def _balancing(self, q: Matrix) -> Matrix:
         """Return multipliers for k points, shape (g, k).
