@@ -106,6 +106,8 @@ ALLOWED = {
         "harness/figures/style.py": "scripts of languages, Greek letters",
         "harness/typeset/": "Latin and Greek letters",
         "maxima/paper/": "letters of indices",
+        "maxima/language/names.lisp": "the same",
+        "maxima/refusals.mac": "the same",
         "maxima/record/description.lisp": "a variable",
     },
     r"pieces?": {

@@ -98,8 +98,8 @@ static double round_off(const double *x, double *rounded, int count, int pattern
     return largest;
 }
 
-/* For the corrections dq, the largest change of each part within rounding errors of all inputs. Where that is no small
-   part of the inputs, as in a singular configuration, it is zero. */
+/* For the corrections dq, the largest change of each part within rounding errors of all inputs. Where that is not a
+   small part of the inputs, as in a singular configuration, it is zero. */
 static void rounding_of_parts(double t, const double *q, const double *v, const double *u, const double *p,
     const double *dq, double *rounding)
 {
