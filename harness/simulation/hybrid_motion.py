@@ -31,7 +31,9 @@ from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.friction import SLIDING, STUCK, Pattern, sticking
 from ..program.motion_problem import Built, DependsOn, MotionProblem, Sign, function_of_knot
+from ..program.motion_program import names_used
 from ..program.precision import Precision
+from ..program.rewriting import computing
 from ..program.sign_pattern import driven, problem_in, program_in, switching_function
 from .accuracy_check import has_root_of
 from .branch_points import last_step, real_state
@@ -289,9 +291,9 @@ class HybridMotion:
             time_point = self._to_come.popleft()
             changes = {name: event.to for name, event in self._time_events.items() if event.t == time_point}
             t, state = self.time, self.state.copy()
-            pattern = {**mode.pattern, **changes}
-            zeros = self._zeros_at({*sticking(mode.pattern)}, pattern, t, state)
-            pattern = self._decided(pattern, zeros, t, state)
+            pattern = self._after_jumps({**mode.pattern, **changes}, t, state)
+            zeros = self._zeros_at({*sticking(pattern)}, pattern, t, state)
+            pattern = self._decided_with_jumps(pattern, zeros, t, state)
             self._switch(pattern, list(changes), t, state, ())
 
     def _look_at_rest(self, step: Step) -> None:
@@ -375,8 +377,11 @@ class HybridMotion:
             zeros = [other for other in zeros if other != name]
         elif self._is_decided_by_accelerations(sign, pattern, t, state):
             zeros = self._zeros_at({name, *zeros}, pattern, t, state)
+        else:
+            pattern = self._after_jumps(pattern, t, state)
+            zeros = sticking(pattern)
         if sign.by is not DependsOn.REACTION:
-            pattern = self._decided(pattern, zeros, t, state)
+            pattern = self._decided_with_jumps(pattern, zeros, t, state)
         self._switch(pattern, [name], t, state, (name,))
 
     def _leave_stuck(self, crossing: Crossing, state: Numbers) -> None:
@@ -403,13 +408,16 @@ class HybridMotion:
         state = before.settled(t, state)  # without the drift, which takes no impulse
         moved = self._passed(before, after, self._signs[names[0]], t, state)
         moved = self._real_state(pattern, t, moved)
+        change = self.nominal.share(as_floats(moved - state), as_floats(state))
+        if change > CONTINUOUS:
+            pattern = self._after_impulse(pattern, t, moved)
+            after = self._mode_of(pattern, self._started_at(t, moved))
         after.engine.restart(t, moved)
         self._left |= dict.fromkeys(left, t)
         self.intervals.append(ModeInterval(t, after))
         self._impulse = self._impulse + (after.energy_at(t, moved) - before.energy_at(t, state))
-        change = self.nominal.share(as_floats(moved - state), as_floats(state))
         slid, slides = set(sticking(before.pattern)), set(sticking(pattern))
-        for name in dict.fromkeys((*names, *(name for name in self._signs if name in slid ^ slides))):
+        for name in dict.fromkeys((*names, *(name for name in self._signs if pattern[name] != before.pattern[name]))):
             if name in slid & slides:
                 continue  # contacts share their friction otherwise
             if name in slid:
@@ -453,11 +461,59 @@ class HybridMotion:
             return [name for name in self._signs if name in known]
         small = self._near_zero(functions.values, ZERO, t, state)
         zeros = {name for name, is_small in zip(functions.names, small, strict=True) if is_small} & self._signs.keys()
+        for sign in [self._signs[name] for name in zeros]:
+            if self._signs_in(sign) and not self._vanishes("switch", sign, pattern, t, state):
+                zeros.remove(sign.name)
         return [
             name
             for name, sign in self._signs.items()
             if name in known or (name in zeros and self._is_decided_by_accelerations(sign, pattern, t, state))
         ]
+
+    def _decided_with_jumps(self, pattern: Pattern, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
+        """Return the pattern as `_decided`, where the signs decided about make other functions jump."""
+        decided = self._decided(pattern, zeros, t, state)
+        after = self._after_jumps(decided, t, state)
+        if after == decided:
+            return decided
+        zeros = [name for name in zeros if after[name] == decided[name]]
+        again = self._decided(after, zeros, t, state)
+        if any(again[name] != decided[name] for name in zeros):
+            self._reject_open(t, zeros)
+        return again
+
+    def _after_jumps(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
+        """Return the pattern with the signs of functions that jump where other signs change."""
+        changed = {name for name, value in pattern.items() if value != self.mode.pattern[name]}
+        for sign in self.problem.signs:
+            if sign.name not in changed and not changed.isdisjoint(self._signs_in(sign)):
+                after = self._with_sign_at(sign, pattern, t, state)
+                changed |= {sign.name} if after != pattern else set()
+                pattern = after
+        return pattern
+
+    def _after_impulse(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
+        """Return the pattern with the signs of functions of the velocities at a state behind an impulse."""
+        for sign in self.problem.signs:
+            if sign.by is DependsOn.VELOCITY:
+                pattern = self._with_sign_at(sign, pattern, t, state)
+        return pattern
+
+    def _with_sign_at(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
+        """Return the pattern with the sign of one function at a state, unless it is zero there."""
+        share = CONTINUOUS if pattern[sign.name] in STUCK else ZERO
+        if sign.name in self._time_events or self._vanishes("switch", sign, pattern, t, state, share):
+            return pattern
+        return {**pattern, sign.name: 1 if self._output("switch", sign, pattern, t, state) > 0 else -1}
+
+    def _signs_in(self, sign: Sign) -> Set[str]:
+        """Return the signs that a switching function contains; none that a multiplier is."""
+        if sign.by is DependsOn.REACTION:
+            return frozenset()
+        name = f"switch[{self.problem.places[sign.name]}]"
+        return self._once(
+            (names_used, name), lambda: names_used(computing(self.problem.switching, {name})) & self._signs.keys()
+        )
 
     def _decided(self, pattern: Pattern, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
         """Return a pattern with the signs that the accelerations agree with.
@@ -507,7 +563,7 @@ class HybridMotion:
             self._reject(t, translatable("%(sign)s stick, and may share the friction in several ways", sign=names))
         if self.problem.reacting:
             self._reject(t, NOT_UNIQUE)
-        self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=names))
+        self._reject_open(t, zeros)
 
     def _shortly_behind(self, t: Any, state: Numbers) -> tuple[Any, Numbers]:
         """Return a state by which roots have a value whose argument is zero here.
@@ -636,6 +692,10 @@ class HybridMotion:
     def _reject(self, t: Any, reason: str) -> NoReturn:
         raise HolonomError(ErrorKind.NO_WAY_ON, detail=place_and_reason(t, reason))
 
+    def _reject_open(self, t: Any, zeros: Sequence[str]) -> NoReturn:
+        names = self._of(zeros)
+        self._reject(t, translatable("%(sign)s is zero, and the motion may leave to either side", sign=names))
+
     def _reject_zero(self, t: Any, functions: str) -> NoReturn:
         self._reject(t, translatable("%(sign)s remains zero, which decides no condition", sign=functions))
 
@@ -645,10 +705,10 @@ class HybridMotion:
         """Return the value of a `switching_function`, compiled at its first use."""
         return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
 
-    def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> bool:
-        """Return True if a `switching_function` is within rounding of zero."""
+    def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers, share: float = ZERO) -> bool:
+        """Return True if a `switching_function` is within a share of its changes, or rounding, of zero."""
         function = self._function(name, sign, pattern)
-        return bool(self._near_zero(lambda *at: function(self._inputs(*at)), ZERO, t, state)[0])
+        return bool(self._near_zero(lambda *at: function(self._inputs(*at)), share, t, state)[0])
 
     def _near_zero(self, functions: Values, share: float, t: Any, state: Numbers) -> Vector:
         """Return True for functions within a share of their changes with state and time."""

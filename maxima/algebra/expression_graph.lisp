@@ -31,7 +31,7 @@
   parts                                    ; sum: terms; product: factors; call: (operator . terms)
   (gradient 'unknown))                     ; list of (position . term), once asked for
 
-(defstruct term coefficient node)
+(defstruct (graph-term (:conc-name term-)) coefficient node) ; Maxima's package grobner has a structure TERM
 (defstruct factor node exponent)
 (defmvar $expression_graph nil)
 
@@ -73,18 +73,18 @@
       (setf (expression-graph-one $expression_graph) (node-of 'product nil '(product)))))
 
 
-(defun number-term (number) (make-term :coefficient number :node (one)))
+(defun number-term (number) (make-graph-term :coefficient number :node (one)))
 (defun zero-term-p (term) (zerop (term-coefficient term)))
 (defun number-term-p (term) (one-p (term-node term)))
 (defun one-p (node) (and (eq (node-kind node) 'product) (null (node-parts node))))
 (defun symbol-term (symbol) (node-term (node-of 'symbol symbol (list 'symbol symbol))))
-(defun node-term (node) (make-term :coefficient 1 :node node))
+(defun node-term (node) (make-graph-term :coefficient 1 :node node))
 
 (defun scaled-term (number term)
   (if (eql number 1) term (normal-term (* number (term-coefficient term)) (term-node term))))
 
 (defun normal-term (coefficient node)
-  (if (zerop coefficient) (number-term 0) (make-term :coefficient coefficient :node node)))
+  (if (zerop coefficient) (number-term 0) (make-graph-term :coefficient coefficient :node node)))
 
 ;;; ---- sums ------------------------------------------------------------------------------
 
@@ -123,7 +123,7 @@
   (let ((collected nil))
     (dolist (term (greatest-first terms #'term-order) collected)
       (if (and collected (eq (term-node term) (term-node (car collected))))
-          (push (make-term :coefficient (+ (term-coefficient term)
+          (push (make-graph-term :coefficient (+ (term-coefficient term)
                                            (term-coefficient (pop collected)))
                            :node (term-node term))
                 collected)
@@ -140,7 +140,7 @@
     (if (minusp first) (- magnitude) magnitude)))
 
 (defun sum-with-scale (scale terms)
-  (make-term :coefficient scale :node (sum-node (grouped-by-magnitude (multiples (/ scale) terms)))))
+  (make-graph-term :coefficient scale :node (sum-node (grouped-by-magnitude (multiples (/ scale) terms)))))
 
 (defun sum-node (terms)
   (node-of 'sum terms
@@ -293,7 +293,7 @@
   "The same value, but not opened any more: a factor of products as it is."
   (let ((node (term-node term)))
     (if (and (member (node-kind node) '(sum product)) (not (one-p node)))
-        (make-term :coefficient (term-coefficient term)
+        (make-graph-term :coefficient (term-coefficient term)
                    :node (node-of 'opaque node (list 'opaque (node-number node))))
         term)))
 
@@ -304,7 +304,7 @@
 
 (defun expression-term (e)
   "The term that a Maxima expression denotes."
-  (cond ((term-p e) e)
+  (cond ((graph-term-p e) e)
         ((numberp e) (number-term e))
         ((symbolp e) (symbol-term e))
         (t (case (caar e)

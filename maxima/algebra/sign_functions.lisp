@@ -198,7 +198,7 @@
   (if *written-openly*
       (let* ((*written-openly* nil) (*at-zeros* t) (*signs-met* nil) (sign (sign-by-values (with-signs g))))
         (if sign (openly sign) (let ((*written-openly* t)) (sign-of-function g))))
-      (or (sign-by-values g) (sign-of-function g))))
+      (or (sign-by-values (in-signs g)) (sign-of-function g))))
 
 (defun sign-by-values (g)
   "nil where g vanishes for no values of the signs in it."
@@ -235,7 +235,14 @@
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."
-  (let ((sign (simplifya (list '(%signum) g) nil))) (if *written-openly* sign (with-sign-symbols sign))))
+  (let ((sign (simplifya (list '(%signum) (in-signs g)) nil))) (if *written-openly* sign (with-sign-symbols sign))))
+
+(defun in-signs (g)
+  "A function as it is written where sizes are not apart: it is met by what it is then."
+  (if *sizes-apart*
+      (reduce #'(lambda (g symbol) (maxima-substitute symbol (take '(%signum) symbol) g))
+              (mapcar #'car *signs-met*) :initial-value g)
+      g))
 
 (defun with-sign-symbols (sign)
   (cond ((atom sign) sign)

@@ -206,7 +206,7 @@
 (defun parts-of-bag (bag kind)
   (mapcar #'(lambda (member)
               (if (eq kind 'sum)
-                  (make-term :coefficient (car member) :node (cdr member))
+                  (make-graph-term :coefficient (car member) :node (cdr member))
                   (make-factor :exponent (car member) :node (cdr member))))
           (bag-members bag)))
 

@@ -34,7 +34,7 @@
 
 (defun lone-minuses (place signs)
   "How many minus signs stand alone in a sum, a call or an output."
-  (cond ((term-p place) (if (lone-minus-p place signs) 1 0))
+  (cond ((graph-term-p place) (if (lone-minus-p place signs) 1 0))
         ((eq (node-kind place) 'call) (count-if #'(lambda (term) (lone-minus-p term signs))
                                                 (cdr (node-parts place))))
         (t (let ((sign (sign-of place signs)))

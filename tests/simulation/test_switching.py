@@ -555,3 +555,60 @@ scene : holonomic_scene(system, initial_state = [x = 2, dot(x) = 0], time_span =
     found = scene.simulate(samples=2).report
     truth = solve_ivp(slope, (0, 6), (2, 0), method="DOP853", rtol=1e-11, atol=1e-13, max_step=0.01).y[0, -1]
     assert found.coordinates["x"] == pytest.approx(truth, rel=1e-8)
+
+
+def block(force, initial, time_span="[0, 4]"):
+    return holonom.system(f"""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+scene : holonomic_scene(system, initial_state = [{initial}], time_span = {time_span})$""")
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+@pytest.mark.parametrize(
+    ("force", "initial", "end", "velocity"),
+    [
+        # a belt whose speed jumps, under a block that slips, and under one that moves with it
+        ("-signum(dot(x) - (if t < 2 then 1 else -1))/5", "x = 0, dot(x) = 1/2", 4, 0.5),
+        ("-signum(dot(x) - (if t < 2 then 1 else -1))/5", "x = 0, dot(x) = 1", 4, 0.6),
+        ("-signum(dot(x) - (if t < 2 then 1 else 3))/5", "x = 0, dot(x) = 1", 4, 1.4),
+        # two belts side by side
+        ("-signum(dot(x) - (if x < 1 then 1 else -1))/5", "x = 0, dot(x) = 1/2", 3, None),
+        # no friction: a right side that is continuous in the velocity
+        ("abs((if t < 3/2 then 1 else 3) - dot(x))", "x = 0, dot(x) = 0", 4, 3 - (2 + math.exp(-1.5)) * math.exp(-2.5)),
+    ],
+)
+def test_switching_function_may_jump_where_another_sign_changes(force, initial, end, velocity, engine):
+    if velocity is None:  # v^2 = 1/4 + 2x/5 to x = 1, then dot(v) = -1/5
+        reached = math.sqrt(0.65)
+        velocity = reached - (end - (reached - 0.5) * 5) / 5
+    found = block(force, initial).simulate(until=end, samples=2, engine=engine)
+    assert found["dot(x)"][-1] == pytest.approx(velocity, abs=1e-8)
+
+
+def test_function_of_the_velocities_may_jump_with_an_impulse():
+    """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [-signum(dot(x))/5, 0], constraints = [y - x - u])$
+scene : holonomic_scene(system, control_law = [u = 1 + 2*abs(t - 1)],
+  initial_state = [x = 0, dot(x) = 1, y = 3, dot(y) = -1], time_span = [0, 2])$""")
+    found = scene.simulate(samples=2)
+    assert [found["dot(x)"][-1], found["dot(y)"][-1]] == pytest.approx([-1, 1], abs=1e-12)
+
+
+def test_saturated_controller_follows_a_jump_of_its_set_point():
+    scene = block("max(-1, (if t < 2 then 1/2 else -5) - x - dot(x))", "x = 0, dot(x) = 0")
+
+    def rate(t, s):
+        return s[1], max(-1, (0.5 if t < 2 else -5) - s[0] - s[1])
+
+    half = solve_ivp(rate, (0, 2 - 1e-15), [0, 0], rtol=1e-10, atol=1e-12).y[:, -1]
+    truth = solve_ivp(rate, (2, 4), half, rtol=1e-10, atol=1e-12, max_step=1e-2).y[:, -1]
+    assert scene.simulate(samples=2)["x"][-1] == pytest.approx(truth[0], abs=1e-6)
+
+
+def test_spring_with_backlash_is_the_same_in_both_forms():
+    """A size within a switching function: the form of the manual was no motion program."""
+    forms = "-max(0, abs(x) - 1)*signum(x)", "-max(0, x - 1) + max(0, -x - 1)"
+    found = [block(force, "x = 2, dot(x) = 1", "[0, 10]").simulate(samples=20)["x"] for force in forms]
+    assert found[0] == pytest.approx(found[1], abs=1e-12)
