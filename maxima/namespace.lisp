@@ -222,15 +222,22 @@
 (defvar *defaults*
   '(($numer nil) ($float nil) ($keepfloat nil) ($%enumer nil) ($modulus nil) ($obase 10) ($ibase 10)
     ($algebraic nil) ($ratfac nil) ($domain $real) ($radexpand t) ($logexpand nil) ($listarith t)
-    ($doallmxops t) ($domxmxops t) ($exponentialize nil) ($demoivre nil) ($trigexpand nil)
+    ($doallmxops t) ($domxmxops t) ($assumescalar t) ($exponentialize nil) ($demoivre nil) ($trigexpand nil)
     ($halfangles nil) ($stardisp nil) ($powerdisp nil) ($expop 0) ($expon 0)))
 
 (defun with-maximas-defaults (statement)
   "A definition of a door with its body under the defaults; any other statement as it is."
   (if (and (eq (caar statement) 'mdefine) (door-p (caaadr statement)))
       (destructuring-bind (head function body) statement
-        (list head function `((mprog) ((mlist) ,@(mapcar #'binding-of-flag *defaults*)) ,body)))
+        (list head function
+              `((mprog) ((mlist) ,@(mapcar #'binding-of-flag *defaults*)) ((without-dependencies) ,body))))
       statement))
+
+;;; depends(x, t), for diff(x, t) at the prompt: the library's dot(x) would be counted a second time.
+(defmspec without-dependencies (form)
+  (let ((depending (mapcar #'(lambda (item) (cons (caar item) (mget (caar item) 'depends))) (cdr $dependencies))))
+    (unwind-protect (progn (dolist (each depending) (mremprop (car each) 'depends)) (meval (second form)))
+      (dolist (each depending) (mputprop (car each) (cdr each) 'depends)))))
 
 ;;; Maxima's own reader takes some flags by another name: $modulus is modulus, $obase *print-base*.
 (defun binding-of-flag (flag) (list '(msetq) (getalias (first flag)) (second flag)))
@@ -270,9 +277,11 @@
 ;;; The library stays out of Maxima's lists of what the user has made:  values,  functions,  and what
 ;;; kill(all)  kills.
 (defun $load_library (directory files)
-  (unless (equal directory (cdr (assoc (cdr files) *loaded-from* :test #'equal)))
-    (read-library (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files)))
-    (push (cons (cdr files) directory) *loaded-from*))
+  (if (equal directory (cdr (assoc (cdr files) *loaded-from* :test #'equal)))
+      (read-library nil)
+      (progn
+        (read-library (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files)))
+        (push (cons (cdr files) directory) *loaded-from*)))
   (setq *asked-for* t)
   '$done)
 
@@ -281,7 +290,7 @@
         ($arrays (copy-list $arrays)) ($props (copy-list $props)) ($structures (copy-list $structures))
         ($myoptions (copy-list $myoptions)))
     (mapc #'evaluate-library-file (mapcar #'read-library-file paths))
-    (mapc #'define-step *steps*))
+    (dolist (call *steps*) (unless (mget (caar call) 'mexpr) (define-step call)))) ; kill(name) may have taken it
   (setq $values (remove-if #'public-option-p $values)))
 
 (defun define-step (call)

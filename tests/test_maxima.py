@@ -114,16 +114,38 @@ def test_an_error_after_a_refusal_that_was_caught_has_no_id(write_scene):
     assert failure_of(write_scene('load("holonom.mac")$ errcatch(dot(x + y))$ 1/0$')).refusal is None
 
 
+def at_prompt(statements):
+    """Return what Maxima prints of statements behind the load of the library."""
+    command = ["maxima", "--very-quiet", "--init=/dev/null"]
+    loaded = f'--batch-string=display2d : false$ load("{LIBRARY}/holonom.mac")$ {statements}'
+    done = subprocess.run([*command, loaded], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100)
+    return done.stdout + done.stderr
+
+
 def test_the_prompt_shows_the_sentence_without_the_id():
-    command = [
-        "maxima",
-        "--very-quiet",
-        "--init=/dev/null",
-        f'--batch-string=load("{LIBRARY}/holonom.mac")$ dot(x + y);',
+    printed = at_prompt("dot(x + y);")
+    assert "x+y" in printed
+    assert not re.search("refuse|dot_of_expression", printed)
+
+
+def test_steps_at_the_prompt_are_independent_of_the_session():
+    """depends(x, t) counted motions twice, and a killed step stayed gone; Groebner bases have a structure TERM, too."""
+    printed = at_prompt(
+        "depends([x, u], t)$ constraint_acceleration([x - u], [x], [u]); is(diff(x, t) # 0); "
+        f'accelerations(x) := x^2$ kill(accelerations)$ load("{LIBRARY}/holonom.mac")$ '
+        "accelerations(matrix([1/m]), [m*g], matrix(), []); total(list) := lmax(list)$ load(grobner)$ "
+        "system : holonomic_system(coordinates = [x], controls = [u], parameters = [m], "
+        "kinetic_energy = m*dot(x)^2/2, constraints = [x^2 - u])$ constraint_acceleration([x^2 - u], [x], [u]); "
+        "derive(system)@multipliers;"
+    ).replace("\\", "")
+    expected = [
+        "[ddot(x)-ddot(u)]",
+        "true",
+        "[g]",
+        "[2*ddot(x)*x+2*dot(x)^2-ddot(u)]",
+        "[((ddot(u)-2*dot(x)^2)*m)/(4*x^2)]",
     ]
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100)
-    assert "x+y" in done.stdout + done.stderr
-    assert not re.search("refuse|dot_of_expression", done.stdout + done.stderr)
+    assert [line for line in printed.splitlines() if line in expected] == expected
 
 
 def test_a_file_without_a_system_is_refused(write_scene):

@@ -471,7 +471,7 @@ class HybridMotion:
         ]
 
     def _decided_with_jumps(self, pattern: Pattern, zeros: Sequence[str], t: Any, state: Numbers) -> Pattern:
-        """Return the pattern as `_decided`, where the signs decided about make other functions jump."""
+        """Return the pattern as `_decided`, with functions that jump then."""
         decided = self._decided(pattern, zeros, t, state)
         after = self._after_jumps(decided, t, state)
         if after == decided:
@@ -483,7 +483,7 @@ class HybridMotion:
         return again
 
     def _after_jumps(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
-        """Return the pattern with the signs of functions that jump where other signs change."""
+        """Return the pattern with the signs of functions that other signs change."""
         changed = {name for name, value in pattern.items() if value != self.mode.pattern[name]}
         for sign in self.problem.signs:
             if sign.name not in changed and not changed.isdisjoint(self._signs_in(sign)):
@@ -493,21 +493,21 @@ class HybridMotion:
         return pattern
 
     def _after_impulse(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
-        """Return the pattern with the signs of functions of the velocities at a state behind an impulse."""
+        """Return the pattern with the signs that velocities behind an impulse have."""
         for sign in self.problem.signs:
             if sign.by is DependsOn.VELOCITY:
                 pattern = self._with_sign_at(sign, pattern, t, state)
         return pattern
 
     def _with_sign_at(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
-        """Return the pattern with the sign of one function at a state, unless it is zero there."""
+        """Return the pattern with the sign of a function that is not zero here."""
         share = CONTINUOUS if pattern[sign.name] in STUCK else ZERO
         if sign.name in self._time_events or self._vanishes("switch", sign, pattern, t, state, share):
             return pattern
         return {**pattern, sign.name: 1 if self._output("switch", sign, pattern, t, state) > 0 else -1}
 
     def _signs_in(self, sign: Sign) -> Set[str]:
-        """Return the signs that a switching function contains; none that a multiplier is."""
+        """Return the signs in a switching function, none if it is a multiplier."""
         if sign.by is DependsOn.REACTION:
             return frozenset()
         name = f"switch[{self.problem.places[sign.name]}]"
@@ -706,7 +706,7 @@ class HybridMotion:
         return float(self._function(name, sign, pattern)(self._inputs(t, state))[0])
 
     def _vanishes(self, name: str, sign: Sign, pattern: Pattern, t: Any, state: Numbers, share: float = ZERO) -> bool:
-        """Return True if a `switching_function` is within a share of its changes, or rounding, of zero."""
+        """Return True if a `switching_function` is zero, but for a share."""
         function = self._function(name, sign, pattern)
         return bool(self._near_zero(lambda *at: function(self._inputs(*at)), share, t, state)[0])
 
