@@ -35,7 +35,7 @@ from .matrices import MotionMatrices, start_of
 from .place_and_reason import place_and_reason
 from .radicands import Radicands, radicands
 from .request import FINAL_STATE_ALONE, SimulationRequest
-from .time_dependence import TimeDependence, time_dependence
+from .time_dependence import TimeDependence, time_dependence, time_dependence_of_motion
 from .time_events import TimeEvent
 from .zeros import SignedFunctions
 
@@ -126,8 +126,8 @@ class Mode:
         self._gradients = VanishingGradients(self.problem, self.matrices, laws_of(problem), self._end)
         to_come = (float(event.t) for name, event in time_events.items() if pattern[name] != event.to)
         until = min([self._end, *to_come])
-        self.by_time = time_dependence(
-            program_with_values(self.problem, self.problem.matrices), self._start, until, self.problem.tables
+        self.by_time = time_dependence_of_motion(
+            self.problem, lambda program: program_with_values(self.problem, program), self._start, until
         ).ended_by(self._dependence_of_signs(until))
         ends = () if self.by_time.end is None else (self.by_time.end,)
         self.stops = sorted({*self.by_time.stops, *ends, *self._gradients.stops})

@@ -12,15 +12,16 @@ A feature of such an expression is not missed if it lasts longer than 1/32768 of
 `RESOLVED` of the expression's largest value. Shorter ones are found if they are near one of the samples.
 """
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Callable, Iterator, Sequence, Set
 from dataclasses import replace
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from ..language import translatable
+from ..program.motion_problem import MotionProblem
 from ..program.motion_program import Call, Expression, Name, Program, names_in
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
@@ -99,6 +100,48 @@ def time_dependence(program: Program, start: float, end: float, tables: Sequence
         return TimeDependence()
     knots = sorted({t for table in tables for t in map(float, table.knots) if start < t < end})
     return _Scan(TimeFunction(expressions, tables), start, end, np.array(knots)).result()
+
+
+def time_dependence_of_motion(
+    problem: MotionProblem, with_values: Callable[[Program], Program], start: float, end: float
+) -> TimeDependence:
+    """Examine the equations of motion, and where events and outputs change.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+    with_values : callable
+        Puts the values of open parameters into a program.
+    start : float
+        First time.
+    end : float
+        Last time.
+
+    Returns
+    -------
+    TimeDependence
+        Only the equations of motion end it.
+    """
+    found, *others = (
+        time_dependence(with_values(program), start, end, problem.tables) for program in time_programs(problem)
+    )
+    return found._replace(stops=tuple(sorted({*found.stops, *chain.from_iterable(each.stops for each in others)})))
+
+
+def time_programs(problem: MotionProblem) -> list[Program]:
+    """Return the programs whose expressions of time are examined.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+
+    Returns
+    -------
+    list of Program
+        That of the equations of motion first.
+    """
+    others = problem.ends.events, problem.outputs
+    return [problem.matrices, *(each for each in others if each is not None)]
 
 
 def time_expressions(program: Program, tables: Sequence[Table] = ()) -> Program:

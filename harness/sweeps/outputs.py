@@ -95,6 +95,25 @@ def read_quantities(texts: Iterable[str]) -> tuple[OutputQuantity, ...]:
     return tuple(dict.fromkeys(_quantity(item) for item in items))
 
 
+def words_in(outputs: Iterable[OutputQuantity]) -> set[str]:
+    """Return the words of outputs that have a meaning of their own.
+
+    Parameters
+    ----------
+    outputs : iterable of OutputQuantity
+
+    Returns
+    -------
+    set of str
+        Of ``final``, ``free``, ``radius``, ``residual`` and ``pi``.
+    """
+    return {
+        word
+        for output in outputs
+        for word in ([output.text] if output.kind in WHOLE.values() else re.findall(r"\bpi\b", output.text))
+    }
+
+
 def items_of(text: str) -> Iterator[str]:
     """Yield the parts between commas that no bracket encloses.
 

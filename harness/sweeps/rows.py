@@ -43,7 +43,7 @@ from ..simulation.zeros import ZERO
 from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size, zeros_with_end
-from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output
+from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output, words_in
 from .quantities import along_motion, expressions_of, forces_of, radicands_beyond_energy, require_known
 from .request import TOLERANCE
 from .series import batch_radii
@@ -120,6 +120,11 @@ class RowMaker:
         if taken := [name for name in (*plan.axes.names, *self.columns) if name in OWN]:
             raise not_an_output(
                 translatable("%(name)s is a column of every sweep; give another name to it", name=taken[0])
+            )
+        outputs = () if problem.outputs is None else problem.outputs.outputs
+        for word in {*problem.state, *problem.parameters, *plan.axes.names, *outputs} & words_in(plan.outputs):
+            raise not_an_output(
+                translatable("%(name)s is a name of the scene, and a quantity of every sweep; rename it", name=word)
             )
 
     @property
@@ -211,8 +216,9 @@ class RowMaker:
             rest = there[~small]
             left = self._together(rows, rest, states[:, ~small], stops) if len(rest) else rest
             return np.concatenate([there[small], left])
-        ends, ended = self._ends(states, values, nominal)
-        times = sorted({*self._asked, *(t for t in stops if t < self._end)})
+        stops = [t for t in stops if t < self._end]
+        ends, ended = self._ends(states, values, nominal, stops)
+        times = sorted({*self._asked, *stops})
         stops = [np.minimum(time, ends) for time in times] if self._problem.ends.until else times
         found = self._engine.integrate(states, values, stops)
         end = self._batch_matrices(ends, found.states[-1], values), found.states[-1]
@@ -237,12 +243,14 @@ class RowMaker:
         self._keep_along(rows, done, seen[:, well])
         return there[~well]
 
-    def _ends(self, states: Floats, values: Floats, nominal: Nominal) -> tuple[Floats, NDArray[np.bool_]]:
+    def _ends(
+        self, states: Floats, values: Floats, nominal: Nominal, stops: Sequence[float]
+    ) -> tuple[Floats, NDArray[np.bool_]]:
         """Return the end times of motions, and True for each that is known."""
         k = states.shape[1]
         if not self._problem.ends.until:
             return np.full(k, self._end), np.ones(k, dtype=bool)
-        found = self._ending_engine.integrate(states, values, [self._end])
+        found = self._ending_engine.integrate(states, values, [*stops, self._end])
         zeros = self._without_rounding(found.seen, self._events, states, values, nominal)
         return np.fmin(self._end, np.fmin.reduce(zeros)), found.arrived
 

@@ -17,7 +17,12 @@ from ..program.motion_problem import MotionProblem
 from ..program.motion_program import names_in
 from ..program.rewriting import with_numbers
 from ..simulation.constraints.singularity import laws_of, zeros_of_controls
-from ..simulation.time_dependence import TimeDependence, largest_parts, time_dependence
+from ..simulation.time_dependence import (
+    TimeDependence,
+    largest_parts,
+    time_dependence_of_motion,
+    time_programs,
+)
 from ..simulation.time_events import DEGREE
 
 LOW = 2  # degree in the time up to which a polynomial rises or falls all over a time span as it does at its beginning
@@ -81,7 +86,9 @@ class TimeWatch:
     def _dependence(self, numbers: Mapping[str, Fraction]) -> TimeDependence:
         if self._smooth:
             return TimeDependence()
-        return time_dependence(with_numbers(self._problem.matrices, numbers), self._start, self._end)
+        return time_dependence_of_motion(
+            self._problem, lambda program: with_numbers(program, numbers), self._start, self._end
+        )
 
 
 def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
@@ -92,12 +99,13 @@ def _in_time(problem: MotionProblem) -> tuple[list[float], tuple[str, ...]]:
     known = {"t": 1} | dict.fromkeys(problem.parameters, 0)  # degrees of these functions
     within: dict[str, set[str]] = {"t": set()} | {name: {name} for name in problem.parameters}  # their parameters
     degrees, involved = [0.0], set()
-    for name, expression in problem.matrices.assignments:
-        for part in largest_parts(expression, known.keys()):
-            if degree := DEGREE.value(part, known):
-                degrees.append(degree)
-                involved.update(*(within[each] for each in names_in(part)))
-        if names_in(expression) <= known.keys():
-            known[name] = DEGREE.value(expression, known)
-            within[name] = set().union(*(within[each] for each in names_in(expression)))
+    for program in time_programs(problem):
+        for name, expression in (*program.assignments, *program.outputs.items()):
+            for part in largest_parts(expression, known.keys()):
+                if degree := DEGREE.value(part, known):
+                    degrees.append(degree)
+                    involved.update(*(within[each] for each in names_in(part)))
+            if names_in(expression) <= known.keys():
+                known[name] = DEGREE.value(expression, known)
+                within[name] = set().union(*(within[each] for each in names_in(expression)))
     return degrees, tuple(name for name in problem.parameters if name in involved)

@@ -195,13 +195,18 @@ def test_a_step_as_short_as_rounding_changed_a_sign_again(length, time, engine, 
     [
         ("y - h", ErrorKind.REFUSED, "unknown_name_in_until"),
         ("g - 3", ErrorKind.REFUSED, "constant_in_until"),
-        ("log(1/2 - t) + 9", ErrorKind.NO_EVENT_VALUE, None),
+        ("sqrt(1/2 - t) + 1", ErrorKind.NO_EVENT_VALUE, None),
     ],
 )
 def test_what_cannot_end_a_motion_is_refused(until, failure, refusal):
     with pytest.raises(HolonomError) as caught:
         thrown(until).simulate(samples=2)
     assert (caught.value.kind, caught.value.refusal) == (failure, refusal)
+
+
+def test_a_crossing_just_before_the_end_of_a_domain_ends_the_motion():
+    report = thrown("log(1/2 - t) + 9").simulate(samples=2).report
+    assert float(report.t) == pytest.approx(0.5 - math.exp(-9), abs=1e-12)
 
 
 def test_the_table_says_what_ended_the_motion():

@@ -467,3 +467,28 @@ def test_an_output_with_a_corner_is_recorded_at_times_only(item, rows_of, scenes
     rows_of(file, "at(side,1)", "m=1:3:3")
     with failing(ErrorKind.NOT_AN_OUTPUT, "side"):
         rows_of(file, item, "m=1:3:3")
+
+
+@pytest.mark.parametrize("values", [["2"], ["1", "2"]])
+def test_a_pulse_in_time_that_ends_motions_or_is_observed_alone_was_missed(values):
+    pulse = "exp(-1000*(t - q)^2)"
+    text = f"""
+system : holonomic_system(coordinates = [x, y], parameters = [q], kinetic_energy = (dot(x)^2 + q*dot(y)^2)/2,
+  potential_energy = x^2/2)$
+seen : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0, y = 0, dot(y) = 1], time_span = [0, 5],
+  observe = [trajectory, p = {pulse}])$
+ended : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0, y = 0, dot(y) = 1], time_span = [0, 5],
+  until = [{pulse} - 1/2])$"""
+    early = np.sqrt(np.log(2) / 1000)
+    last = holonom.sweep(holonom.system(text, "ended"), values={"q": values}, keep=["t"]).to_pandas()
+    assert last["t"].to_numpy() == pytest.approx([float(q) - early for q in values], abs=1e-7)
+    seen = holonom.sweep(holonom.system(text, "seen"), values={"q": values}, keep=["max(p)", "mean(p)", "zero(p-1/2)"])
+    for row, q in zip(seen.to_pandas().itertuples(index=False), map(float, values), strict=True):
+        assert list(row)[1:4] == pytest.approx([1, np.sqrt(np.pi / 1000) / 5, q - early], abs=1e-6)
+
+
+@pytest.mark.parametrize(("name", "keep"), [("pi", "2*pi"), ("free", "free"), ("final", "final")])
+def test_a_name_of_the_scene_is_no_word_of_the_outputs(name, keep):
+    text = OSCILLATOR.replace("x", name).replace('load("holonom.mac")$', "")
+    with failing(ErrorKind.NOT_AN_OUTPUT):
+        holonom.sweep(holonom.system(text), values={"k": [1], "m": [1]}, keep=[keep])
