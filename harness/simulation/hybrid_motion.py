@@ -501,7 +501,7 @@ class HybridMotion:
 
     def _with_sign_at(self, sign: Sign, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
         """Return the pattern with the sign of a function that is not zero here."""
-        share = CONTINUOUS if pattern[sign.name] in STUCK else ZERO
+        share = CONTINUOUS if pattern[sign.name] in (SLIDING, *STUCK) else ZERO
         if sign.name in self._time_events or self._vanishes("switch", sign, pattern, t, state, share):
             return pattern
         return {**pattern, sign.name: 1 if self._output("switch", sign, pattern, t, state) > 0 else -1}

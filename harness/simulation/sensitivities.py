@@ -446,11 +446,20 @@ class Sensitivities:
             place = next(i for i, each in enumerate(releases, start=1) if set(each.multipliers) == ended)
             return _Zero(before.problem, before.problem.ends.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
+        if len(changed) > 1:  # the others jump with it, or with its impulse
+            changed = [name for name in changed if before.pattern[name] in (1, -1) and self._is_zero(before, name)]
         if len(changed) != 1:
             raise no_sensitivity(translatable("several signs change at t = %(time)s", time=f"{self._time:.10g}"))
         if before.pattern[changed[0]] == SLIDING:
             return None
         return _switching_zero(before, changed[0])
+
+    def _is_zero(self, before: Mode, name: str) -> bool:
+        """Return True if the argument of a sign is zero at the end of a mode."""
+        zero, at = _switching_zero(before, name), (np.array([self._time]), self._last[:, None])
+        value = values_in(zero.problem, zero.program, DOUBLE)
+        change = first_order_changes(value, *at, nominal_of(before.whole))[0, 0]
+        return bool(abs(value(*at)[0, 0]) <= ON_SURFACE * change)
 
     def _begin_on_surfaces(self, begun: Mode) -> None:
         """Begin on switching surfaces that some directions leave.

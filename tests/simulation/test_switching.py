@@ -612,3 +612,16 @@ def test_spring_with_backlash_is_the_same_in_both_forms():
     forms = "-max(0, abs(x) - 1)*signum(x)", "-max(0, x - 1) + max(0, -x - 1)"
     found = [block(force, "x = 2, dot(x) = 1", "[0, 10]").simulate(samples=20)["x"] for force in forms]
     assert found[0] == pytest.approx(found[1], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("initial", "position", "velocity"), [("x = 0, dot(x) = 1/2", 4, 0), ("x = 0, dot(x) = 1", -2, -2)]
+)
+def test_sensitivities_pass_a_switching_function_that_jumps(initial, position, velocity):
+    """Slipping: v = 1/2 + 2 c - 2 c. From the belt: v = 1 - 2 c, x = 4 - 2 c."""
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x], parameters = [c], kinetic_energy = dot(x)^2/2,
+  forces = [-c*signum(dot(x) - (if t < 2 then 1 else -1))])$
+scene : holonomic_scene(system, parameter_values = [c = 1/5], initial_state = [{initial}], time_span = [0, 4])$""")
+    found = scene.simulate(samples=2, sensitivities=["c"]).report.sensitivities
+    assert found == pytest.approx({"d(x, c)": position, "d(dot(x), c)": velocity}, abs=1e-9)
