@@ -11,7 +11,6 @@ from refusing import failing
 import holonom
 from holonom.failures import ErrorKind
 from holonom.simulation.request import Stabilization
-from holonom.simulation.time_dependence import time_dependence
 from holonom.sweeps import batch_engine, time_watch
 from holonom.sweeps.rows import RowMaker, Status
 
@@ -195,7 +194,8 @@ def test_rows_are_the_same_however_little_room_there_is_for_steps_at_first(rows_
 
 def test_the_time_is_scanned_once_for_each_set_of_parameters_in_it(rows_of, scenes, monkeypatch):
     scanned = []
-    monkeypatch.setattr(time_watch, "time_dependence", lambda *asked: scanned.append(asked) or time_dependence(*asked))
+    scan = time_watch.time_dependence_of_motion
+    monkeypatch.setattr(time_watch, "time_dependence_of_motion", lambda *asked: scanned.append(asked) or scan(*asked))
     for file, axes, times in (
         (EXAMPLES / "crane.mac", ("m=50:500:3", "c=0:40:4"), 1),
         (scenes / "driven.mac", ("m=1:2:3", "k=1:2:4"), 4),
