@@ -447,19 +447,14 @@ class Sensitivities:
             return _Zero(before.problem, before.problem.ends.releases, f"event[{place}]")
         changed = [name for name, value in after.pattern.items() if before.pattern[name] != value]
         if len(changed) > 1:  # the others jump with it, or with its impulse
-            changed = [name for name in changed if before.pattern[name] in (1, -1) and self._is_zero(before, name)]
+            at = np.array([self._time]), self._last[:, None]
+            crossed = [name for name in changed if before.pattern[name] != SLIDING]
+            changed = [name for name in crossed if np.less_equal(*_sizes_of_zero(before, name, *at))]
         if len(changed) != 1:
             raise no_sensitivity(translatable("several signs change at t = %(time)s", time=f"{self._time:.10g}"))
         if before.pattern[changed[0]] == SLIDING:
             return None
         return _switching_zero(before, changed[0])
-
-    def _is_zero(self, before: Mode, name: str) -> bool:
-        """Return True if the argument of a sign is zero at the end of a mode."""
-        zero, at = _switching_zero(before, name), (np.array([self._time]), self._last[:, None])
-        value = values_in(zero.problem, zero.program, DOUBLE)
-        change = first_order_changes(value, *at, nominal_of(before.whole))[0, 0]
-        return bool(abs(value(*at)[0, 0]) <= ON_SURFACE * change)
 
     def _begin_on_surfaces(self, begun: Mode) -> None:
         """Begin on switching surfaces that some directions leave.
@@ -484,17 +479,24 @@ class Sensitivities:
 
         Elsewhere these are zeros.
         """
-        zero, *at = _switching_zero(begun, sign.name), *_start_of(begun)
-        value = values_in(zero.problem, zero.program, DOUBLE)
+        zero, at = _switching_zero(begun, sign.name), _start_of(begun)
         found = Variation(*zero[:2], (zero.output,), self.directions)(*at, self._moves[:, :, None])[0, :, 0]
-        least = ON_SURFACE * first_order_changes(value, *at, nominal_of(begun.whole))[0, 0]
-        is_there = begun.pattern[sign.name] == SLIDING or abs(value(*at)[0, 0]) <= least
+        size, least = _sizes_of_zero(begun, sign.name, *at)
+        is_there = begun.pattern[sign.name] == SLIDING or size <= least
         return np.where(is_there & (np.abs(found * self._sizes) > least), found, 0.0)
 
     def _reject_start(self, sign: Sign) -> None:
         raise no_sensitivity(
             translatable("they depend on the side, as the motion starts where %(of)s is zero", of=sign.of)
         )
+
+
+def _sizes_of_zero(mode: Mode, name: str, t: Numbers, state: Numbers) -> tuple[float, float]:
+    """Return the size of a sign's argument, and the size up to which it is none."""
+    zero = _switching_zero(mode, name)
+    value = values_in(zero.problem, zero.program, DOUBLE)
+    change = first_order_changes(value, t, state, nominal_of(mode.whole))[0, 0]
+    return abs(value(t, state)[0, 0]), ON_SURFACE * change
 
 
 def _start_of(begun: Mode) -> tuple[Numbers, Numbers]:
