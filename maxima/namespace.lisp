@@ -277,11 +277,9 @@
 ;;; The library stays out of Maxima's lists of what the user has made:  values,  functions,  and what
 ;;; kill(all)  kills.
 (defun $load_library (directory files)
-  (if (equal directory (cdr (assoc (cdr files) *loaded-from* :test #'equal)))
-      (read-library nil)
-      (progn
-        (read-library (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files)))
-        (push (cons (cdr files) directory) *loaded-from*)))
+  (let ((again (equal directory (cdr (assoc (cdr files) *loaded-from* :test #'equal)))))
+    (read-library (unless again (mapcar #'(lambda (file) (concatenate 'string directory file)) (cdr files))))
+    (unless again (push (cons (cdr files) directory) *loaded-from*)))
   (setq *asked-for* t)
   '$done)
 

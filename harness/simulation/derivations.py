@@ -121,8 +121,6 @@ def stands(problem: MotionProblem) -> bool:
     from .matrices import start_of
 
     begun = at_start(problem)
-    if not begun.start.keys() >= set(begun.state):
-        return False
     function = problem.once("start", begun.motion, lambda: NumpyFunction(begun.motion))
     inputs, start = Inputs(begun), start_of(begun)
     with np.errstate(all="ignore"):
