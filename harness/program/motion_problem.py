@@ -240,6 +240,7 @@ class MotionProblem:
     )
     joints: Mapping[str, str] = field(default_factory=dict)  # as `Description.joints`
     joint_shapes: Mapping[str, Sequence[int]] = field(default_factory=dict)  # as `Description.joint_shapes`
+    recorded: Program | None = field(default=None)  # quantities that a sweep records along the motion
     _compiled: dict[Hashable, list[tuple[object, Any]]] = field(default_factory=dict, compare=False, repr=False)
 
     @staticmethod

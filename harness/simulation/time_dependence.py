@@ -105,7 +105,7 @@ def time_dependence(program: Program, start: float, end: float, tables: Sequence
 def time_dependence_of_motion(
     problem: MotionProblem, with_values: Callable[[Program], Program], start: float, end: float
 ) -> TimeDependence:
-    """Examine the equations of motion, and where events and outputs change.
+    """Examine the equations of motion, and where events, outputs and recorded quantities change.
 
     Parameters
     ----------
@@ -140,7 +140,7 @@ def time_programs(problem: MotionProblem) -> list[Program]:
     list of Program
         That of the equations of motion first.
     """
-    others = problem.ends.events, problem.outputs
+    others = problem.ends.events, problem.outputs, problem.recorded
     return [problem.matrices, *(each for each in others if each is not None)]
 
 

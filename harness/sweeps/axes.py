@@ -270,18 +270,18 @@ def _axes(values: Sequence[Values], samples: Sequence[Sample], size: int | None,
             detail = translatable(
                 "%(name)s=%(given)s: expected an integer from %(least)s on", name=name, given=repr(given), least=least
             )
-            raise _error(detail)
+            raise not_an_axis(detail)
     names = [axis.name for axis in chain(values, samples)]
     if not names:
         raise HolonomError(ErrorKind.NOTHING_VARIES)
     if twice := next((name for name in names if names.count(name) > 1), None):
-        raise _error(translatable("%(twice)s is varied twice", twice=twice))
+        raise not_an_axis(translatable("%(twice)s is varied twice", twice=twice))
     if bool(samples) != (size is not None):
         missing = translatable("a sample needs its --size") if samples else translatable("--size needs a --sample")
-        raise _error(missing)
+        raise not_an_axis(missing)
     axes = Axes(tuple(values), tuple(samples), size or 1, seed or 0)
     if axes.rows > MOST_ROWS:
-        raise _error(
+        raise not_an_axis(
             translatable("these are %(rows)s rows; at most %(most)s are allowed", rows=axes.rows, most=MOST_ROWS)
         )
     return axes
@@ -291,10 +291,10 @@ def _grid(text: str) -> Grid:
     name, rest = _named(text)
     parts = [part.strip() for part in rest.split(":")]
     if len(parts) != 3:
-        raise _error(translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text))
+        raise not_an_axis(translatable("%(text)s: expected NAME=FIRST:LAST:COUNT", text=text))
     first, last, count = parts
     if not count.isdecimal() or not 1 <= len(count) <= 12 or int(count) < 1:
-        raise _error(translatable("%(text)s: the count is not a positive integer", text=text))
+        raise not_an_axis(translatable("%(text)s: the count is not a positive integer", text=text))
     return Grid(name, _number(first, text), _number(last, text), int(count), text)
 
 
@@ -307,35 +307,46 @@ def _sample(text: str) -> Sample:
     name, rest = _named(text)
     found = DRAWN.fullmatch(rest.strip())
     if found is None or found[1] not in set(Distribution):
-        raise _error(
+        raise not_an_axis(
             translatable("%(text)s: expected %(names)s(NUMBER,NUMBER)", text=text, names=", ".join(Distribution))
         )
     kind, first, second = Distribution(found[1]), _number(found[2], text), _number(found[3], text)
     if kind is Distribution.NORMAL and not second > 0:
-        raise _error(translatable("%(text)s: the deviation is not positive", text=text))
+        raise not_an_axis(translatable("%(text)s: the deviation is not positive", text=text))
     if kind is not Distribution.NORMAL and not first < second:
-        raise _error(translatable("%(text)s: the smallest value is not below the largest", text=text))
+        raise not_an_axis(translatable("%(text)s: the smallest value is not below the largest", text=text))
     if kind is Distribution.LOGUNIFORM and not first > 0:
-        raise _error(translatable("%(text)s: loguniform needs positive values", text=text))
+        raise not_an_axis(translatable("%(text)s: loguniform needs positive values", text=text))
     return Sample(name, kind, first, second, text)
 
 
 def _named(text: str) -> tuple[str, str]:
     name, equals, rest = text.partition("=")
     if not equals or not NAME.fullmatch(name.strip()):
-        raise _error(translatable("%(text)s: the name of the parameter is missing", text=text))
+        raise not_an_axis(translatable("%(text)s: the name of the parameter is missing", text=text))
     return name.strip(), rest
 
 
 def _number(text: str, whole: str) -> float:
     text = text.strip()
     if not re.fullmatch(NUMBER, text) or not within_reach(text.lstrip("+-")):
-        raise _error(translatable("%(whole)s: expected a number, not %(text)s", whole=whole, text=repr(text)))
+        raise not_an_axis(translatable("%(whole)s: expected a number, not %(text)s", whole=whole, text=repr(text)))
     try:
         return float(Fraction(text))
     except ZeroDivisionError:
-        raise _error(translatable("%(whole)s: division by zero", whole=whole)) from None
+        raise not_an_axis(translatable("%(whole)s: division by zero", whole=whole)) from None
 
 
-def _error(reason: str) -> HolonomError:
+def not_an_axis(reason: str) -> HolonomError:
+    """Return the error of a varied parameter that a sweep cannot have.
+
+    Parameters
+    ----------
+    reason : str
+        Clause about it.
+
+    Returns
+    -------
+    HolonomError
+    """
     return HolonomError(ErrorKind.NOT_AN_AXIS, detail=reason)

@@ -138,8 +138,24 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
     list of heyoka expression
         One for each quantity.
     """
+    zero = import_heyoka().expression(0.0)
+    return [zero + found for found in heyoka_expressions(program_of(quantities), known).values()]
+
+
+def program_of(quantities: Sequence[Expression]) -> Program:
+    """Return a program of quantities.
+
+    Parameters
+    ----------
+    quantities : sequence of Expression
+
+    Returns
+    -------
+    Program
+        One output for each quantity, in order.
+    """
     named = {f"output[{place}]": quantity for place, quantity in enumerate(quantities)}
-    program = Program(
+    return Program(
         scene=None,
         solve=None,
         method="composed",
@@ -148,8 +164,6 @@ def expressions_of(quantities: Sequence[Expression], known: Known) -> list[Any]:
         assignments=tuple(named.items()),
         outputs={name: Name(name) for name in named},
     )
-    zero = import_heyoka().expression(0.0)
-    return [zero + found for found in heyoka_expressions(program, known).values()]
 
 
 def forces_of(problem: MotionProblem) -> tuple[list[Expression], list[Expression]]:

@@ -44,7 +44,14 @@ from .axes import Axes
 from .batch_engine import BatchEngine, Look
 from .extremes import Steps, first_zero, largest, largest_size, zeros_with_end
 from .outputs import ALONG, EXTREMES, Kind, OutputQuantity, not_an_output, words_in
-from .quantities import along_motion, expressions_of, forces_of, radicands_beyond_energy, require_known
+from .quantities import (
+    along_motion,
+    expressions_of,
+    forces_of,
+    program_of,
+    radicands_beyond_energy,
+    require_known,
+)
 from .request import TOLERANCE
 from .series import batch_radii
 from .single import SingleMotions
@@ -94,9 +101,10 @@ class RowMaker:
     """
 
     def __init__(self, plan: Plan) -> None:
-        problem = self._problem = plan.problem
+        quantities = [output.quantity for output in plan.outputs if output.quantity is not None]
+        problem = self._problem = replace(plan.problem, recorded=program_of(quantities))
         self.plan = plan
-        require_known(problem, [output.quantity for output in plan.outputs if output.quantity is not None])
+        require_known(problem, quantities)
         _require_smooth(problem, plan.outputs)
         self._starts, self._start = InitialStates(problem), float(problem.start["t"])
         self._derivatives = [output for output in plan.outputs if output.kind is Kind.DERIVATIVE]

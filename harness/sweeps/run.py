@@ -17,7 +17,7 @@ from ..program.request import Request
 from ..sandbox import Limits
 from ..simulation.engines.taylor import checked_tolerance
 from ..source import Source, source_of
-from .axes import Axes, Grid, Listed, Sample
+from .axes import Axes, Grid, Listed, Sample, not_an_axis
 from .dataset import SweepDocument, SweepFolder, SweptOptions, SweptParameter, SweptScene, chunks_of
 from .outputs import Kind
 from .request import SweepRequest
@@ -141,6 +141,8 @@ def run_sweep(
     checked_tolerance(wanted.tol, read_precision("double"))
     source = source_of(file, limits)
     kinds = {output.kind for output in wanted.outputs}
+    if both := [name for name in wanted.axes.names if name in request.settings]:
+        raise not_an_axis(translatable("%(name)s is varied and set to a value; drop one of both", name=both[0]))
     text = _derived(source, replace(request, derivatives=Kind.DERIVATIVE in kinds), wanted.axes)
     problem = read_problem(text)
     _require_parameters(problem, wanted.axes)
@@ -185,10 +187,7 @@ def _derived(source: Source, request: Request, axes: Axes) -> str:
 
 def _require_parameters(problem: MotionProblem, axes: Axes) -> None:
     if foreign := [name for name in axes.names if name not in problem.parameters]:
-        raise HolonomError(
-            ErrorKind.NOT_AN_AXIS,
-            detail=translatable("unknown parameter %(name)s of %(scene)s", name=foreign[0], scene=problem.scene),
-        )
+        raise not_an_axis(translatable("unknown parameter %(name)s of %(scene)s", name=foreign[0], scene=problem.scene))
 
 
 def _document(source: Source, request: Request, wanted: SweepRequest, derived: str, maker: RowMaker) -> SweepDocument:

@@ -487,6 +487,18 @@ ended : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0, y = 0, dot(y
         assert list(row)[1:4] == pytest.approx([1, np.sqrt(np.pi / 1000) / 5, q - early], abs=1e-6)
 
 
+@pytest.mark.parametrize("friction", ["0", "q*signum(dot(x))/100"])
+def test_a_pulse_in_time_of_a_recorded_quantity_was_missed(friction):
+    text = f"""
+system : holonomic_system(coordinates = [x], parameters = [q], kinetic_energy = dot(x)^2/2, forces = [-{friction}])$
+moving : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 5])$"""
+    pulse = "exp(-10^7*(t-q)^2)"
+    keep = [f"max({pulse})", f"mean({pulse})", f"zero({pulse}-1/2)"]
+    found = holonom.sweep(holonom.system(text), values={"q": [1.2173, 3.1]}, keep=keep).to_pandas()
+    for row, q in zip(found[keep].to_numpy(), found["q"], strict=True):
+        assert row == pytest.approx([1, np.sqrt(np.pi / 1e7) / 5, q - np.sqrt(np.log(2) / 1e7)], abs=1e-9)
+
+
 @pytest.mark.parametrize(("name", "keep"), [("pi", "2*pi"), ("free", "free"), ("final", "final")])
 def test_a_name_of_the_scene_is_no_word_of_the_outputs(name, keep):
     text = OSCILLATOR.replace("x", name).replace('load("holonom.mac")$', "")
