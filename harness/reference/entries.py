@@ -115,6 +115,18 @@ def step_texts() -> tuple[PartText, ...]:
     return _parts("step")
 
 
+@cache
+def tool_texts() -> tuple[PartText, ...]:
+    """Return the functions around the steps: notation, tables and questions.
+
+    Returns
+    -------
+    tuple of PartText
+        Texts of the functions.
+    """
+    return _parts("tool")
+
+
 def _parts(kind: str) -> tuple[PartText, ...]:
     described = _described()
     context = described[f"{kind}_context"]

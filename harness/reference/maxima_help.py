@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 from ..files import shared
-from .entries import EntryText, ErrorExample, FunctionText, PartText, function_texts, part_texts, step_texts
+from .entries import EntryText, ErrorExample, FunctionText, PartText, function_texts, part_texts, step_texts, tool_texts
 
 BY_HAND = shared("examples") / "paper" / "by_hand.mac"
 INFO = "holonom.info"
@@ -68,7 +68,7 @@ def _topics() -> Iterator[tuple[str, str]]:
     """
     topics = [(function.name, _function(function)) for function in function_texts()]
     topics += [(entry.name, _entry(entry)) for function in function_texts() for entry in function.entries]
-    topics += [(part.name, _part(part)) for part in (*part_texts(), *step_texts())]
+    topics += [(part.name, _part(part)) for part in (*part_texts(), *step_texts(), *tool_texts())]
     shared, met = Counter(name for name, _ in topics), Counter()
     for name, text in topics:
         met[name] += 1

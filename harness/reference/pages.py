@@ -16,7 +16,7 @@ from sphinx.application import Sphinx
 
 from ..cli import group
 from ..document_types import TYPES, schema
-from .entries import function_texts, part_texts, step_texts
+from .entries import function_texts, part_texts, step_texts, tool_texts
 
 FOLDER = "reference/"
 SPECIAL = re.compile(r"`[^`]+`|([\\*_\[\]<>$|{}#~])")  # of Markdown; code, which keeps them
@@ -75,6 +75,7 @@ def _templates() -> Environment:
         "functions": {each.name: each for each in function_texts()},
         "bodies": part_texts(),
         "steps": step_texts(),
+        "tools": tool_texts(),
         "schemas": _schemas(),
         "statuses": (group.__doc__ or "").split("\n\n")[1],
         "fields": fields_of,

@@ -105,7 +105,7 @@ def time_dependence(program: Program, start: float, end: float, tables: Sequence
 def time_dependence_of_motion(
     problem: MotionProblem, with_values: Callable[[Program], Program], start: float, end: float
 ) -> TimeDependence:
-    """Examine the equations of motion, and where events, outputs and recorded quantities change.
+    """Examine the equations of motion, events, outputs and recorded quantities.
 
     Parameters
     ----------

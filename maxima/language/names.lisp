@@ -12,7 +12,9 @@
 
 (defun text-of-expression (e) (coerce (mstring e) 'string))
 
-(defun $plain_name (x) (and ($symbolp x) (not ($constantp x)) (not (member x '(t nil)))))
+(defun $plain_name (x)
+  "A symbol that is neither a constant, nor an array or declared nonscalar, of which Maxima makes matrices."
+  (and ($symbolp x) (not ($constantp x)) (not ($nonscalarp x)) (not (member x '(t nil)))))
 
 (defun $writable_name (x)
   "Letters, digits, _ and %, and what is not ASCII: no character that Maxima writes with a backslash."

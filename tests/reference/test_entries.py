@@ -7,7 +7,15 @@ from pathlib import Path
 import pytest
 
 from holonom.maxima import LIBRARY
-from holonom.reference.entries import EntryText, FunctionText, PartText, function_texts, part_texts, step_texts
+from holonom.reference.entries import (
+    EntryText,
+    FunctionText,
+    PartText,
+    function_texts,
+    part_texts,
+    step_texts,
+    tool_texts,
+)
 
 SYSTEM, SCENE = function_texts()
 
@@ -53,10 +61,8 @@ CASES = [
     ),
     *((in_context(step, error.given), error.message) for step in step_texts() for error in step.errors),
     *(case for step in step_texts() for case in misused(step)),
-    ("dot(x + y)", "Write dot of each name"),
-    *((f"{name}(x)", f"{name}: the first argument") for name in ("print_derivation", "free_motion_of")),
-    ("motion_series(x, 3, exact)", "motion_series: the first argument"),
-    ("continued_motion(x, 3, 16, 1)", "continued_motion: the first argument"),
+    *((in_context(tool, tool.example), None) for tool in tool_texts()),
+    *((in_context(tool, error.given), error.message) for tool in tool_texts() for error in tool.errors),
 ]
 
 
@@ -80,7 +86,7 @@ def test_maxima_answers_as_the_text_says(answers, number):
     case, message = CASES[number]
     assert len(answers) == len(CASES)
     if message is None:
-        assert answers[number] == "accepted", case
+        assert answers[number].endswith("accepted"), case
     else:
         assert answers[number].endswith("refused"), case
         assert message in answers[number]

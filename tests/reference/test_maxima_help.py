@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from holonom.reference.entries import function_texts, part_texts, step_texts
+from holonom.reference.entries import function_texts, part_texts, step_texts, tool_texts
 from holonom.reference.maxima_help import help_files
 
 FILES = help_files()
@@ -32,7 +32,7 @@ def test_every_entry_is_a_topic_with_its_whole_text(entry):
     assert all(" ".join(each.split()) in text for each in message)
 
 
-@pytest.mark.parametrize("part", [*part_texts(), *step_texts()], ids=lambda part: part.name)
+@pytest.mark.parametrize("part", [*part_texts(), *step_texts(), *tool_texts()], ids=lambda part: part.name)
 def test_every_function_called_by_itself_is_a_topic_with_its_whole_text(part):
     message = (part.call, part.text, part.example, part.gives, *(error.message for error in part.errors))
     [text] = [found for topic in TOPICS if f"-- Function: {part.call} " in (found := explained(topic))]
@@ -41,7 +41,8 @@ def test_every_function_called_by_itself_is_a_topic_with_its_whole_text(part):
 
 def test_topics_follow_one_another_without_overlap():
     places = sorted(TOPICS.values())
-    assert len(places) == len(ENTRIES) + len(function_texts()) + len(part_texts()) + len(step_texts())
+    functions = (*function_texts(), *part_texts(), *step_texts(), *tool_texts())
+    assert len(places) == len(ENTRIES) + len(functions)
     assert all(start + length < following for (start, length), (following, _) in pairwise(places))
 
 

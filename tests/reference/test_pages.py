@@ -15,7 +15,7 @@ from sphinx.util.docutils import docutils_namespace
 import holonom
 from holonom.cli import holonom as command_line
 from holonom.document_types import TYPES, schema
-from holonom.reference.entries import function_texts, part_texts, step_texts
+from holonom.reference.entries import function_texts, part_texts, step_texts, tool_texts
 from holonom.reference.pages import fields_of
 
 SOURCE = Path(holonom.__file__).parent / "companion"
@@ -46,7 +46,7 @@ def objects(reference) -> set[tuple[str, str]]:
 
 def test_every_maxima_entry_and_function_has_a_place(objects):
     entries = {f"{function.name}: {entry.name}" for function in function_texts() for entry in function.entries}
-    functions = {each.name for each in (*function_texts(), *part_texts(), *step_texts())}
+    functions = {each.name for each in (*function_texts(), *part_texts(), *step_texts(), *tool_texts())}
     assert {("maxima-entry", name) for name in entries} <= objects
     assert {("maxima-function", name) for name in functions} <= objects
 
