@@ -99,8 +99,8 @@ class FreeMotionTrial:
             return ""
         numbers = ", ".join(f"{name} = {value:.6g}" for name, value in {**found.controls, **found.parameters}.items())
         return translatable(
-            "the search of closed forms found no law; a numerical search found one that leaves multipliers of at most "
-            "%(largest)s from t = %(first)s to t = %(last)s, in the middle with %(numbers)s",
+            "the search of closed forms found no law; a numerical search found one that leaves constraint forces of at "
+            "most %(largest)s from t = %(first)s to t = %(last)s, in the middle with %(numbers)s",
             largest=f"{found.largest:.1g}",
             first=f"{found.time - found.reach:.6g}",
             last=f"{found.time + found.reach:.6g}",

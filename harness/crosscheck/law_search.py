@@ -2,10 +2,10 @@
 
 The statement that no such law exists is tested by this search. Near a random time of the time span the controls are
 polynomials in the time with unknown coefficients. Parameters without a value are drawn with both signs. The
-multipliers of the bordered equations, at random states on the constraint manifold, are minimized by the
-Levenberg-Marquardt method. If there is a law, the residual falls at least by the fourth power of the interval's
-length. If the controls satisfy the equations at the time alone, it falls by the second or first power. Maxima's
-results are not used.
+multipliers of the bordered equations, times the sizes of the constraints' gradients, are minimized at random states
+on the constraint manifold by the Levenberg-Marquardt method. If there is a law, the residual falls at least by the
+fourth power of the interval's length. If the controls satisfy the equations at the time alone, it falls by the second
+or first power. Maxima's results are not used.
 """
 
 from __future__ import annotations
@@ -44,24 +44,24 @@ LARGEST_CONTROL = 1e3
 
 VANISHING = 1e-9
 NEARLY_VANISHING = 1e-4
-"""Relative size of multipliers taken for zero: at one time, and along a polynomial."""
+"""Relative size of constraint forces taken for zero: at one time, and along a polynomial."""
 
 NARROWING = 4
 """How many times shorter the second interval is."""
 
 LEAST_FALL = NARROWING**3
-"""How many times smaller the multipliers of a law are there at least: between the second power and the fourth."""
+"""How many times smaller the constraint forces of a law are there at least: between the second power and the fourth."""
 
 Span = tuple[float, float]
 Vector = list[float]
 
 
 class FreeLaw(NamedTuple):
-    """Controls for which all multipliers vanish near a time, as far as numbers show."""
+    """Controls for which all constraint forces seem to vanish near a time."""
 
     time: float
     reach: float  # of the times at which they were tried
-    largest: float  # multiplier that was left there
+    largest: float  # constraint force that was left there
     controls: Mapping[str, float]  # values at the time
     parameters: Mapping[str, float]  # those that were drawn
 
@@ -195,8 +195,8 @@ class _Trial:
         """
         controls = self.numbers.system.controls
         start = [draw.uniform(-1.5, 1.5) for _ in range(3 * len(controls))]
-        scale = max(1.0, _norm(self.multipliers(start, 2, [0.0])))
-        found, size = _minimized(lambda x: self.multipliers(x, 2, [0.0]), start)
+        scale = max(1.0, _norm(self.forces(start, 2, [0.0])))
+        found, size = _minimized(lambda x: self.forces(x, 2, [0.0]), start)
         if size > VANISHING * scale or _norm(found) > LARGEST_CONTROL:
             return None
         start = [c for k in range(len(controls)) for c in (*found[3 * k : 3 * k + 3], *[0.0] * (DEGREE - 2))]
@@ -215,12 +215,12 @@ class _Trial:
         )
 
     def polynomial(self, start: Vector) -> tuple[Vector, float]:
-        """Return coefficients with the smallest multipliers on the interval, and the norm."""
+        """Return coefficients with the smallest constraint forces, and their norm."""
         nodes = [self.reach * k / 2 for k in (-2, -1, 0, 1, 2)]
-        return _minimized(lambda x: self.multipliers(x, DEGREE, nodes), start)
+        return _minimized(lambda x: self.forces(x, DEGREE, nodes), start)
 
-    def multipliers(self, coefficients: Vector, degree: int, nodes: Sequence[float]) -> Vector:
-        """Return multipliers in all states at all times for polynomial controls.
+    def forces(self, coefficients: Vector, degree: int, nodes: Sequence[float]) -> Vector:
+        """Return constraint forces in all states at all times for polynomial controls.
 
         The polynomials are in units of the reach.
         """
@@ -230,10 +230,10 @@ class _Trial:
             for k in range(0, len(coefficients), degree + 1):
                 controls += _polynomial(coefficients[k : k + degree + 1], node / self.reach, self.reach)
             for state in self.states:
-                found += self._multipliers_in(state, controls, self.time + node)
+                found += self._forces_in(state, controls, self.time + node)
         return found
 
-    def _multipliers_in(self, state: Vector, controls: Vector, t: float) -> Vector:
+    def _forces_in(self, state: Vector, controls: Vector, t: float) -> Vector:
         n, numbers = len(self.numbers.system.coordinates), self.numbers
         q, v = state[:n], state[n:]
 
@@ -252,7 +252,9 @@ class _Trial:
             raise _NoValueError
         v = _moved(v, *evaluated(numbers.rates), slopes)
         *columns, constants = evaluated(numbers.bordered)
-        return _solved(list(zip(*columns, strict=True)), [-each for each in constants])[n:]
+        multipliers = _solved(list(zip(*columns, strict=True)), [-each for each in constants])[n:]
+        gradients = (math.hypot(*gradient) for gradient in zip(*slopes, strict=True))
+        return [size * each for size, each in zip(gradients, multipliers, strict=True)]
 
 
 def _polynomial(c: Vector, s: float, unit: float) -> Vector:
