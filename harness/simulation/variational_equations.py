@@ -29,7 +29,7 @@ from .matrices import MotionMatrices, start_of
 from .nominal import Nominal
 from .variation import Variation, no_sensitivity, size_of
 
-PROBES = np.array([0.0, 0.3127, -0.7411])  # in these units, at the initial time: where a parameter may have an effect
+PROBES = 3  # random states near the initial one, at which a parameter may have an effect
 NO_MOVE = 1e-6  # of the state, by a direction of nominal size: smaller derivatives may be rounding errors of it
 GROWTH = 1024  # digits of derivatives are lost in proportion to it, and parts of a motion halved by its logarithm
 
@@ -78,7 +78,8 @@ class VariationalEquations:
         if not names:
             return {}
         problem, units, (t, state) = self.problem, self.units, start_of(self.problem)
-        times, states = t + units.time * np.abs(PROBES), state[:, None] + np.outer(units.state, PROBES)
+        drawn = np.random.default_rng(0).uniform(-1, 1, (len(state) + 1, PROBES))
+        times, states = t + units.time * np.abs(drawn[0]), state[:, None] + units.state[:, None] * drawn[1:]
         rates = Variation(problem, problem.motion, problem.accelerations, names)
         moves = rates(times, states, np.zeros((len(state), len(names), len(times))))
         moves = np.abs(moves) * (units.time / units.velocities)[:, None, None]

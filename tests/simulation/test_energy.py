@@ -99,6 +99,16 @@ def test_where_nothing_does_work_the_energy_stays():
     assert abs(gained) <= 1e-10
 
 
+@pytest.mark.parametrize("relation", ["y - 2*x", "dot(x) - 3*x", "dot(y) - 4*x", "2*dot(x) - 3*y", "dot(x) - x - y"])
+def test_the_states_that_show_power_were_multiples_of_one_another(relation):
+    scene = holonom.system(f"""system : holonomic_system(coordinates = [x, y],
+        kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = x^2/2, forces = [push = [0, {relation}]])$
+      run : holonomic_scene(system, initial_state = [x = 1, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$""")
+    report = scene.simulate(samples=2).report
+    assert report.trusted
+    assert abs(report.energy_error) < 1e-13
+
+
 def test_damping_takes_its_power():
     paper = problem("paper/paper.mac", "free_motion_scene")
     balance = balance_of(RobustEngine(Task.of(paper)), paper)
