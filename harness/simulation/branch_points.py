@@ -61,34 +61,35 @@ def last_step(mode: "Mode", until: Any, span: float, nominal: Nominal) -> Step |
     return step if (lost <= CONSTANT * nominal.velocities).all() else None
 
 
-def real_state(functions: Values, t: Any, state: Numbers, least: Any) -> Numbers:
-    """Return a state in which accelerations are real, moved within the tolerance.
+def real_state(functions: Values, mode: "Mode", t: Any, state: Numbers, least: Any) -> Numbers:
+    """Return a state in which functions are real, moved within the tolerance.
 
     Parameters
     ----------
     functions : callable
-        Takes times, shape (k,), and states, shape (2n, k), to n accelerations, and what else is solved.
+        Takes times, shape (k,), and states, shape (2n, k), to values of the functions.
+    mode : Mode
+        The mode in which the state was reached.
     t : number
         Time of the state.
     state : ndarray, shape (2n,)
         Coordinates, then velocities.
     least : number
-        Least time along the velocities that counts.
+        Least time along the motion that counts.
 
     Returns
     -------
     ndarray, shape (2n,)
         `state` itself if no such state is found.
     """
-    n, later = len(state) // 2, 0 * least
+    later, rates = 0 * least, np.concatenate([state[len(state) // 2 :], np.nan_to_num(_accelerations(mode, t, state))])
 
     def is_real(later: Any) -> bool:
-        moved = np.concatenate([state[:n] + later * state[n:], state[n:]])
-        return bool(np.isfinite(as_floats(functions(np.array([t]), moved[:, None])[:n])).all())
+        return bool(np.isfinite(as_floats(functions(np.array([t]), (state + later * rates)[:, None]))).all())
 
     for doubling in range(DOUBLINGS):
         if is_real(later) and is_real(later - least):
-            return np.concatenate([state[:n] + later * state[n:], state[n:]])
+            return state + later * rates
         later = least * 2**doubling
     return state
 

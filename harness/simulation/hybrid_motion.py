@@ -34,7 +34,7 @@ from ..program.motion_problem import Built, DependsOn, MotionProblem, Sign, func
 from ..program.motion_program import names_used
 from ..program.precision import Precision
 from ..program.rewriting import computing
-from ..program.sign_pattern import driven, problem_in, program_in, switching_function
+from ..program.sign_pattern import driven, problem_in, program_in, switching_function, switching_functions
 from .accuracy_check import has_root_of
 from .branch_points import last_step, real_state
 from .constraints.factorization import factored_constraints
@@ -429,20 +429,38 @@ class HybridMotion:
             self.switchings.append(Switching(float(t), self._signs[name].of, outcome))
 
     def _real_state(self, pattern: Pattern, t: Any, state: Numbers) -> Numbers:
-        """Return the state, moved to where accelerations of a pattern are real."""
-        solved = self._with_roots(pattern)
-        if solved is None:
+        """Return the state, moved to where the functions of a pattern are real."""
+        functions = [each for each in (self._with_roots(pattern), self._surfaces_with_roots(pattern)) if each]
+        if not functions:
             return state
         number = self._precision.number
         share = max(self._precision.rounding, number(repr(self.mode.engine.tol)))
         least = share * max(abs(t), number(repr(float(self.nominal.time))))
-        return real_state(lambda *at: solved(self._inputs(*at)), t, state, least)
+
+        def values(*at: Numbers) -> Numbers:
+            return np.concatenate([as_floats(each(self._inputs(*at))) for each in functions])
+
+        return real_state(values, self.mode, t, state, least)
+
+    def _surfaces_with_roots(self, pattern: Pattern) -> Evaluation | None:
+        """Return the switching functions of a pattern, None if they contain no roots."""
+        names = [
+            sign.name
+            for sign in self.problem.signs
+            if sign.by is not DependsOn.REACTION and pattern[sign.name] not in (SLIDING, *STUCK)
+        ]
+
+        def build() -> Evaluation | None:
+            functions = switching_functions(self.problem, pattern, names)
+            return evaluation(functions, self._precision) if has_root_of(functions, self.problem.state) else None
+
+        return self._once((switching_functions, frozenset(pattern.items())), build) if names else None
 
     def _with_roots(self, pattern: Pattern) -> Evaluation | None:
         """Return the accelerations of a pattern, None if they contain no roots."""
 
         def build() -> Evaluation | None:
-            motion = program_in(self.problem, self.problem.motion, pattern)
+            motion = program_in(self.problem, computing(self.problem.motion, self.problem.accelerations), pattern)
             has_root = has_root_of(motion, self.problem.state)
             return evaluation_once(self.problem, motion, self._precision) if has_root else None
 
@@ -484,6 +502,7 @@ class HybridMotion:
 
     def _after_jumps(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
         """Return the pattern with the signs of functions that other signs change."""
+        state = self._real_state(pattern, t, state)
         changed = {name for name, value in pattern.items() if value != self.mode.pattern[name]}
         for sign in self.problem.signs:
             if sign.name not in changed and not changed.isdisjoint(self._signs_in(sign)):

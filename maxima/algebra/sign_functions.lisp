@@ -130,11 +130,19 @@
       (cond ((null value) ($refuse '$if_without_else))
             ((and (eql weight 1) (consp value) (eq (caar value) 'mcond))
              (weighted-branches (cdr value) outer outer-names))
-            ((eql weight 1) (acons 1 (restricted (with-signs value) outer outer-names) nil))
+            ((eql weight 1) (acons 1 (value-of-branch value outer outer-names) nil))
             (t (let ((names (append (cdr ($listofvars condition)) outer-names)))
                  (acons weight
-                        (restricted (with-signs value) (mul outer weight) names)
+                        (value-of-branch value (mul outer weight) names)
                         (weighted-branches others (mul outer (sub 1 weight)) names))))))))
+
+(defvar *within* nil "(weight . names): where signs are symbols, the branch whose value is written.")
+
+(defun further-within (weight names) (cons (mul (or (car *within*) 1) weight) (append names (cdr *within*))))
+
+(defun value-of-branch (value weight names)
+  (let ((*within* (unless *written-openly* (further-within weight names))))
+    (restricted (with-signs value) weight names)))
 
 (defun sum-of-branches (branches)
   "The value of the first branch whose weight is 1, or 0; and 1 where there is none, otherwise 0."
@@ -146,13 +154,19 @@
       (destructuring-bind (weight . value) (first branches) (values (mul weight value) (sub 1 weight)))))
 
 (defun restricted (e weight names)
-  "The expression whose partial functions of what the condition decides have a value where its weight is zero."
+  "The expression whose functions of what the condition decides have values, not too large, where its weight is zero."
   (if (or (atom e) (member 'array (car e)))
       e
       (let ((parts (mapcar #'(lambda (part) (restricted part weight names)) (cdr e))))
-        (if (and (partial-p e) (some #'(lambda (name) (not (free (second e) name))) names))
-            (simplifya (list* (car e) (with-value-inside (caar e) (first parts) weight) (rest parts)) nil)
-            (if (same-items-p parts (cdr e)) e (simplifya (cons (list (caar e)) parts) t))))))
+        (cond ((not (some #'(lambda (name) (not (free e name))) names)) e)
+              ((exponential-p e) (power (first parts) (mul weight (second parts))))
+              ((member (caar e) '(%cosh %sinh)) (take (list (caar e)) (mul weight (first parts))))
+              ((and (partial-p e) (some #'(lambda (name) (not (free (second e) name))) names))
+               (simplifya (list* (car e) (with-value-inside (caar e) (first parts) weight) (rest parts)) nil))
+              ((same-items-p parts (cdr e)) e)
+              (t (simplifya (cons (list (caar e)) parts) t))))))
+
+(defun exponential-p (e) (and (eq (caar e) 'mexpt) ($constantp (second e))))
 
 (defun partial-p (e)
   (and (member (caar e) *partial-functions*)
@@ -205,7 +219,7 @@
   (let ((signs (signs-in g)) ($ratprint nil))
     (cond ((zerop1 g) 0)
           ((and signs (<= (length signs) *most-signs*) (vanishes-for-signs-p g signs))
-           ($ratsimp (without-squares (sum-over-signs g signs)))))))
+           ($ratsimp (without-squares (sum-over-signs g g signs)))))))
 
 (defun signs-in (g) (remove-if #'(lambda (symbol) (free g symbol)) (mapcar #'car *signs-met*)))
 
@@ -214,16 +228,31 @@
       (some #'(lambda (value) (vanishes-for-signs-p (maxima-substitute value (first signs) g) (rest signs))) '(1 -1))
       (zerop1 ($ratsimp g))))
 
-(defun sum-over-signs (g signs)
-  "The sign of g by the values of the signs in it."
+(defvar *values* nil "List of (symbol . value), by which a function is written.")
+
+(defun sum-over-signs (g guarded signs)
+  "The sign of g by the values of the signs in it. guarded: g with these signs left in the arguments of guards."
   (if signs
       (let ((symbol (first signs)))
         (addn (mapcar #'(lambda (value)
-                          (let ((part (sum-over-signs (maxima-substitute value symbol g) (rest signs))))
+                          (let* ((*values* (acons symbol value *values*))
+                                 (part (sum-over-signs (maxima-substitute value symbol g)
+                                                       (outside-guards value symbol guarded) (rest signs))))
                             (mul (weight-of-value value symbol) (maxima-substitute value symbol part))))
                       (if *at-zeros* '(1 -1 0) '(1 -1)))
               nil))
-      (let ((simplified ($ratsimp g))) (if (zerop1 simplified) 0 (sign-of-function simplified)))))
+      (let ((simplified ($ratsimp g)))
+        (if (zerop1 simplified) 0 (sign-of-function (if (alike1 g guarded) simplified guarded))))))
+
+(defun outside-guards (value symbol e)
+  "The value in place of a sign, but where functions have no value, or one too large, for another sign."
+  (cond ((eq e symbol) value)
+        ((or (atom e) (guarded-p e) (free e symbol)) e)
+        (t (simplifya (cons (list (caar e))
+                            (mapcar #'(lambda (part) (outside-guards value symbol part)) (cdr e)))
+                      nil))))
+
+(defun guarded-p (e) (or (partial-p e) (exponential-p e) (member (caar e) '(%cosh %sinh))))
 
 (defun weight-of-value (value sign)
   "1 where a sign has the value, 0 where it has another one."
@@ -235,7 +264,22 @@
 
 (defun sign-of-function (g)
   "The sign of g, by a number and the symbols of the functions that it is a product of."
-  (let ((sign (simplifya (list '(%signum) (in-signs g)) nil))) (if *written-openly* sign (with-sign-symbols sign))))
+  (let ((sign (signs-of-bases (simplifya (list '(%signum) (in-signs g)) nil))))
+    (if *written-openly* sign (with-sign-symbols sign))))
+
+(defun signs-of-bases (sign)
+  "A sign by values: that of a root of even order is that of what is under the root."
+  (cond ((atom sign) sign)
+        ((eq (caar sign) '%signum)
+         (let* ((g (second sign)) (by-values (by-values (if (even-root-p g) (second g) g))))
+           (if (alike1 by-values g) sign (signs-of-bases (simplifya (list '(%signum) by-values) nil)))))
+        (t (let ((parts (mapcar #'signs-of-bases (cdr sign))))
+             (if (same-items-p parts (cdr sign)) sign (simplifya (cons (list (caar sign)) parts) t))))))
+
+(defun by-values (g)
+  (reduce #'(lambda (g met) (outside-guards (cdr met) (car met) g)) *values* :initial-value g))
+
+(defun even-root-p (e) (and (consp e) (eq (caar e) 'mexpt) ($ratnump (third e)) (evenp ($denom (third e)))))
 
 (defun in-signs (g)
   "A function as it is written where sizes are not apart: it is met by what it is then."
@@ -246,8 +290,10 @@
 
 (defun with-sign-symbols (sign)
   (cond ((atom sign) sign)
-        ((eq (caar sign) '%signum) (sign-symbol (second sign)))
+        ((eq (caar sign) '%signum) (sign-symbol (within-branch (second sign))))
         (t (simplifya (cons (list (caar sign)) (mapcar #'with-sign-symbols (cdr sign))) t))))
+
+(defun within-branch (g) (if *within* (restricted g (car *within*) (cdr *within*)) g))
 
 (defun sign-symbol (g)
   (let ((met (find-if #'(lambda (met) (alike1 (cdr met) g)) *signs-met*)))

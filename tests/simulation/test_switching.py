@@ -615,6 +615,24 @@ def test_spring_with_backlash_is_the_same_in_both_forms():
 
 
 @pytest.mark.parametrize(
+    ("force", "by_python"),
+    [
+        ("min(dot(x), max(0, dot(x) - x)^(3/2))", lambda x, v: min(v, max(0, v - x) ** 1.5)),
+        ("min(3*dot(x), max(0, dot(x) - x)^(5/2))", lambda x, v: min(3 * v, max(0, v - x) ** 2.5)),
+        ("abs(max(0, dot(x) - x)^(3/2) - 2*dot(x))", lambda x, v: abs(max(0, v - x) ** 1.5 - 2 * v)),
+        ("max(0, 1/3 - dot(x))^(1/2)", lambda x, v: max(0, 1 / 3 - v) ** 0.5),
+    ],
+)
+def test_a_root_in_a_switching_function_begins_where_another_sign_changes(force, by_python):
+    """Rounding left v - x below zero there, and "changes its sign again and again" was the end."""
+    found = block(f"{force} - 4*x", "x = 1/7, dot(x) = 1", "[0, 3]").simulate(samples=2)
+    expected = solve_ivp(
+        lambda _, y: [y[1], by_python(*y) - 4 * y[0]], (0, 3), [1 / 7, 1], rtol=1e-9, atol=1e-11, max_step=0.01
+    )
+    assert [found["x"][-1], found["dot(x)"][-1]] == pytest.approx(expected.y[:, -1], abs=1e-6)
+
+
+@pytest.mark.parametrize(
     ("initial", "position", "velocity"), [("x = 0, dot(x) = 1/2", 4, 0), ("x = 0, dot(x) = 1", -2, -2)]
 )
 def test_sensitivities_pass_a_switching_function_that_jumps(initial, position, velocity):
