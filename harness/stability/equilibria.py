@@ -36,8 +36,9 @@ from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
 from .equivalence import Equivalence
 from .linear_equations import LinearEquations, Point
-from .linearization import Linearization, changing_function, linearized, perturbed_eigenvalues
+from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .repetition import reversible, whole_turns
+from .smoothness import is_smooth
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -205,15 +206,16 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time, a control has no value, signs of the time or of velocities decide, or an
+        The equations contain the time, a control has no value, forces jump with the sign of a velocity, or an
         orientation is zero at a place where the constraints hold.
     """
-    require_analytic(replace(problem, signs=tuple(s for s in problem.signs if s.by is not DependsOn.CONFIGURATION)))
+    require_analytic(replace(problem, signs=tuple(sign for sign in problem.signs if sign.by is DependsOn.REACTION)))
     require_laws(problem)
     if equations.changes_with_time:
         raise HolonomError(ErrorKind.NEVER_AT_REST)
     values = _constant_controls(problem, equations, controls)
     search = _Search(problem, equations, list(values.values()))
+    search.require_smooth_at_rest()
     same = search.equivalence(np.random.default_rng(seed))
     rational = _rational(problem, equations, controls)
     turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
@@ -456,7 +458,7 @@ class _Search:
                 continue
             known_multipliers = np.abs(multipliers) > self._uncertainty(q, multipliers, self._rough(q, multipliers))
             multipliers = np.where(known_multipliers, multipliers, 0.0)
-            stiffness = self._stiffness(q, multipliers) if self._is_between_switchings(q) else None
+            stiffness = self._stiffness(q, multipliers) if self._is_smooth(q) else None
             if stiffness is None:
                 singular.append(q)
                 continue
@@ -480,8 +482,15 @@ class _Search:
         """Return the signs that no motion changes, nan where one has no value."""
         return np.sign(self._equations.orientation(self._point(q, np.zeros(len(self._equations.multipliers)))))
 
-    def _is_between_switchings(self, q: Vector) -> bool:
-        return changing_function(self._problem, self._t, np.concatenate([q, np.zeros(self._n)])) is None
+    def require_smooth_at_rest(self) -> None:
+        """Reject forces that jump with the sign of a velocity, as dry friction does."""
+        switching = [sign for sign in self._problem.signs if sign.by is not DependsOn.CONFIGURATION]
+        if switching and not self._is_smooth(self._first):
+            raise HolonomError(ErrorKind.NOT_ANALYTIC, self._problem.scene, switching[0].of)
+
+    def _is_smooth(self, q: Vector) -> bool:
+        point = self._point(q, np.zeros(len(self._equations.multipliers)))
+        return is_smooth(self._equations, point, nominal_of(self._problem).state)
 
     def _most_independent(self, q: Vector) -> tuple[int, ...]:
         """Return the most independent constraints at a place, if some are redundant."""

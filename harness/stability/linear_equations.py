@@ -155,7 +155,7 @@ class LinearEquations:
         for row, size in zip(ROWS, (n, g, g, g, own), strict=True):
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
-        inputs = [point.t, *np.concatenate(self._inputs(point))]
+        inputs = self.inputs(point)
         if random is None:
             values = self._evaluate(inputs)
         else:
@@ -205,12 +205,24 @@ class LinearEquations:
         """
         return sum(beta < len(self.multipliers) - self.servo for beta in independent)
 
-    def _inputs(self, point: "Point") -> Sequence[Matrix]:
-        if not len(point.found):
-            return point[1:5]
-        rates = np.split(point.controls, 3)
-        none = np.zeros_like(point.found)
-        return *point[1:4], rates[0], point.found, rates[1], none, rates[2], none
+    def inputs(self, point: "Point") -> list[float | Vector]:
+        """Return the inputs of the program.
+
+        Parameters
+        ----------
+        point : Point
+            Or several of them, with a last axis more.
+
+        Returns
+        -------
+        list of float or ndarray
+            One for each input.
+        """
+        parts = point[1:5]
+        if len(point.found):
+            rates, none = np.split(point.controls, 3), np.zeros_like(point.found)
+            parts = *point[1:4], rates[0], point.found, rates[1], none, rates[2], none
+        return [point.t, *np.concatenate(parts)]
 
 
 class Point(NamedTuple):

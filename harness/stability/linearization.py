@@ -27,7 +27,7 @@ import scipy.linalg
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.drawing import Drawing
-from ..program.motion_problem import MotionProblem, require_analytic
+from ..program.motion_problem import DependsOn, MotionProblem, Sign, require_analytic
 from ..program.motion_program import names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.rewriting import computing
@@ -44,6 +44,7 @@ from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
 from ..structs import Documented, computed, entry, with_attributes
 from .linear_equations import LinearEquations, Point
+from .smoothness import ON_SURFACE, is_smooth
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -51,7 +52,6 @@ if TYPE_CHECKING:
 
 RATES = ("u", "du", "ddu")  # a control, its time derivative and its acceleration
 AT_REST = 1e-9  # velocities and accelerations, in terms of their nominal sizes, that count as none
-ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
 ROUNDED = 16 * np.finfo(float).eps  # rounding errors of A, relative
 UNREACHED = (1e-9, 1e-12)  # relative to other directions of the state: those surely reached, and surely not
 
@@ -313,14 +313,20 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     Raises
     ------
     HolonomError
-        A sign changes or slides there. A joint is released before. The motion has forces with multipliers, or cannot be
-        continued so far. The constraints are singular there, or derivatives have no value.
+        A sign changes there with an effect, or slides. A joint is released before. The motion has forces with
+        multipliers, or cannot be continued so far. The constraints are singular there, or derivatives have no value.
     """
     require_analytic(replace(problem, signs=(), tables=(), ends=replace(problem.ends, released=())))
     t, state = state_at(problem, at)
-    require_between_switchings(problem, t, state)
+    point = motion_at(problem, equations, t, state)
+    changing = changing_signs(problem, t, state)
+    if changing and not (
+        all(sign.by in (DependsOn.CONFIGURATION, DependsOn.VELOCITY) for sign in changing)
+        and is_smooth(equations, point, nominal_of(problem).state)
+    ):
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing[0].of)
     with np.errstate(invalid="ignore"):
-        found = linearized(problem, equations, motion_at(problem, equations, t, state), t)
+        found = linearized(problem, equations, point, t)
     if not all(np.isfinite(each).all() for each in (found.C, *found.D.values())):
         raise HolonomError(ErrorKind.NO_DERIVATIVES, time=t)
     return found
@@ -343,15 +349,12 @@ def require_between_switchings(problem: MotionProblem, t: float, state: Vector) 
     HolonomError
         It is not a state between switchings.
     """
-    changing = changing_function(problem, t, state)
-    if changing is not None:
-        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing)
+    if changing := changing_signs(problem, t, state):
+        raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing[0].of)
 
 
-def changing_function(problem: MotionProblem, t: float, state: Vector) -> str | None:
-    """Return the first switching function that changes its sign at a state.
-
-    One that depends on a reaction counts as well.
+def changing_signs(problem: MotionProblem, t: float, state: Vector) -> list[Sign]:
+    """Return the signs that change at a state, and those that depend on a reaction.
 
     A function counts as zero if it is small relative to its changes when time, coordinates and velocities move by
     nominal sizes.
@@ -363,23 +366,23 @@ def changing_function(problem: MotionProblem, t: float, state: Vector) -> str | 
 
     Returns
     -------
-    str or None
-        None between switchings.
+    list of Sign
+        Empty between switchings.
     """
-    if not problem.signs:
-        return None
     nominal, names = nominal_of(problem), ("t", *problem.state)
     points = np.array([t, *state])[:, None] + np.diag([0.0, nominal.time, *nominal.state])[1:]
     known = dict(zip(names, points, strict=True)) | {name: float(value) for name, value in problem.values.items()}
+    changing = []
     for place, sign in enumerate(problem.signs, start=1):
         program = computing(problem.switching, {f"switch[{place}]"})
         if not names_used(program) & set(program.inputs) <= known.keys():
-            return sign.of
+            changing.append(sign)
+            continue
         here, *beside = NumpyFunction(program)([known.get(name, 0.0) for name in program.inputs])[0]
         if not abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here))):
-            return sign.of
+            changing.append(sign)
         known[sign.name] = np.sign(here)
-    return None
+    return changing
 
 
 def linearized(

@@ -1,0 +1,84 @@
+"""Equations that are the same with either sign of a function, to first order.
+
+Forces such as -c |v| v have a switching function, v, and derivatives where it is zero. There the equations of motion
+and their gradients, `LinearEquations.program`, have the same values with either sign. A linearization needs no more:
+its eigenvalues decide about stability where the right sides have continuous derivatives (Khalil, Nonlinear Systems,
+4.3).
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import numpy as np
+
+from ..program.motion_program import Call, Expression, Name, Operation, Program, calls_of
+from ..program.numpy_function import NumpyFunction
+from ..simulation.matrices import Vector
+from .linear_equations import LinearEquations, Point
+
+ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
+MOST_SIGNS = 4  # that are zero together; their combinations are tried
+SAME = 1e-9  # of the largest value: a difference that is none
+
+SIGNED = (Operation.SIGN, Operation.ABS)
+
+
+def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
+    """Return True if no sign that is zero at a point has an effect to first order.
+
+    Parameters
+    ----------
+    equations : LinearEquations
+    point : Point
+        State with accelerations, multipliers and controls.
+    sizes : ndarray, shape (2n,)
+        Nominal sizes of the state. A function that is small relative to its changes by them counts as zero.
+
+    Returns
+    -------
+    bool
+    """
+    zeros = _zero_arguments(equations, point, sizes)
+    if not 0 < len(zeros) <= MOST_SIGNS:
+        return not zeros
+    sides = [
+        NumpyFunction(_with_signs(equations.program, dict(zip(zeros, signs, strict=True))))(equations.inputs(point))
+        for signs in product((1, -1), repeat=len(zeros))
+    ]
+    return bool(np.ptp(sides, axis=0).max(initial=0.0) <= SAME * np.abs(sides).max(initial=0.0))
+
+
+def _zero_arguments(equations: LinearEquations, point: Point, sizes: Vector) -> list[Expression]:
+    """Return the functions in the equations whose signs are zero."""
+    calls = (call for call in calls_of(equations.program) if call.operation in SIGNED)
+    named = {
+        f"argument[{place}]": each for place, each in enumerate(dict.fromkeys(call.arguments[0] for call in calls))
+    }
+    if not named:
+        return []
+    program = equations.program
+    outputs = {name: Name(name) for name in named}
+    evaluate = NumpyFunction(replace(program, assignments=(*program.assignments, *named.items()), outputs=outputs))
+    moved = [point.state, *(point.state + move for move in np.diag(sizes))]
+    here, *beside = (np.array(evaluate(equations.inputs(point._replace(state=state)))) for state in moved)
+    changes = np.max(np.abs(np.subtract(beside, here)), axis=0)
+    return [
+        each for each, is_away in zip(named.values(), np.abs(here) > ON_SURFACE * changes, strict=True) if not is_away
+    ]
+
+
+def _with_signs(program: Program, signs: Mapping[Expression, int]) -> Program:
+    """Return a program with numbers for the signs of some functions."""
+
+    def written(expression: Expression) -> Expression:
+        if not isinstance(expression, Call):
+            return expression
+        arguments = tuple(map(written, expression.arguments))
+        if expression.operation not in SIGNED or expression.arguments[0] not in signs:
+            return Call(expression.operation, arguments)
+        sign = Fraction(signs[expression.arguments[0]])
+        return sign if expression.operation is Operation.SIGN else Call(Operation.MULTIPLY, (sign, arguments[0]))
+
+    return replace(program, assignments=tuple((name, written(value)) for name, value in program.assignments))
