@@ -18,7 +18,7 @@ from ..described import SystemTitle
 from ..documents import ask
 from ..failures import ErrorKind, HolonomError
 from ..formats import Document, read
-from ..program.motion_program import Program, names_used
+from ..program.motion_program import Expression, Name, Operation, Program, calls_of, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
 from ..program.rewriting import with_factors
@@ -32,6 +32,7 @@ from ..structs import entry
 ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
 FACTORS = 61  # different rounding errors at one point
+SIGNED = (Operation.SIGN, Operation.ABS)
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,16 @@ class LinearEquations:
     @cached_property
     def _evaluate_roughly(self) -> NumpyFunction:
         return NumpyFunction(with_factors(self.program, [f"factor[{k}]" for k in range(FACTORS)]))
+
+    @cached_property
+    def signed_functions(self) -> tuple[list[Expression], NumpyFunction]:
+        """Functions whose sign or size the program contains, and their values."""
+        functions = list(
+            dict.fromkeys(call.arguments[0] for call in calls_of(self.program) if call.operation in SIGNED)
+        )
+        named = {f"function[{place}]": each for place, each in enumerate(functions)}
+        assignments, outputs = (*self.program.assignments, *named.items()), {name: Name(name) for name in named}
+        return functions, NumpyFunction(replace(self.program, assignments=assignments, outputs=outputs))
 
     @cached_property
     def _orientations(self) -> NumpyFunction:

@@ -13,16 +13,14 @@ from itertools import product
 
 import numpy as np
 
-from ..program.motion_program import Call, Expression, Name, Operation, Program, calls_of
+from ..program.motion_program import Call, Expression, Operation, Program
 from ..program.numpy_function import NumpyFunction
 from ..simulation.matrices import Vector
-from .linear_equations import LinearEquations, Point
+from .linear_equations import SIGNED, LinearEquations, Point
 
 ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
 MOST_SIGNS = 4  # that are zero together; their combinations are tried
 SAME = 1e-9  # of the largest value: a difference that is none
-
-SIGNED = (Operation.SIGN, Operation.ABS)
 
 
 def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
@@ -52,21 +50,13 @@ def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
 
 def _zero_arguments(equations: LinearEquations, point: Point, sizes: Vector) -> list[Expression]:
     """Return the functions in the equations whose signs are zero."""
-    calls = (call for call in calls_of(equations.program) if call.operation in SIGNED)
-    named = {
-        f"argument[{place}]": each for place, each in enumerate(dict.fromkeys(call.arguments[0] for call in calls))
-    }
-    if not named:
+    functions, evaluate = equations.signed_functions
+    if not functions:
         return []
-    program = equations.program
-    outputs = {name: Name(name) for name in named}
-    evaluate = NumpyFunction(replace(program, assignments=(*program.assignments, *named.items()), outputs=outputs))
     moved = [point.state, *(point.state + move for move in np.diag(sizes))]
     here, *beside = (np.array(evaluate(equations.inputs(point._replace(state=state)))) for state in moved)
-    changes = np.max(np.abs(np.subtract(beside, here)), axis=0)
-    return [
-        each for each, is_away in zip(named.values(), np.abs(here) > ON_SURFACE * changes, strict=True) if not is_away
-    ]
+    away = np.abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here)), axis=0)
+    return [each for each, is_away in zip(functions, away, strict=True) if not is_away]
 
 
 def _with_signs(program: Program, signs: Mapping[Expression, int]) -> Program:
