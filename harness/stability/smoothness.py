@@ -18,9 +18,8 @@ from ..program.numpy_function import NumpyFunction
 from ..simulation.matrices import Vector
 from .linear_equations import SIGNED, LinearEquations, Point
 
-ON_SURFACE = 1e-6  # switching functions, relative to their changes, that count as zero
+ON_SURFACE = 1e-6  # of what they are beside: switching functions, and effects of their signs, that count as zero
 MOST_SIGNS = 4  # that are zero together; their combinations are tried
-SAME = 1e-9  # of the largest value: a difference that is none
 
 
 def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
@@ -42,10 +41,17 @@ def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
     if not 0 < len(zeros) <= MOST_SIGNS:
         return not zeros
     sides = [
-        NumpyFunction(_with_signs(equations.program, dict(zip(zeros, signs, strict=True))))(equations.inputs(point))
+        NumpyFunction(_with_signs(equations.program, dict(zip(zeros, signs, strict=True))))
         for signs in product((1, -1), repeat=len(zeros))
     ]
-    return bool(np.ptp(sides, axis=0).max(initial=0.0) <= SAME * np.abs(sides).max(initial=0.0))
+    inputs = [equations.inputs(each) for each in _here_and_beside(point, sizes)]
+    here, *beside = (np.ptp([side(each) for side in sides], axis=0) for each in inputs)
+    return bool((here <= ON_SURFACE * np.max(beside, axis=0)).all())
+
+
+def _here_and_beside(point: Point, sizes: Vector) -> list[Point]:
+    """Return a point, and the points that are a nominal size away in one direction."""
+    return [point, *(point._replace(state=point.state + move) for move in np.diag(sizes))]
 
 
 def _zero_arguments(equations: LinearEquations, point: Point, sizes: Vector) -> list[Expression]:
@@ -53,8 +59,7 @@ def _zero_arguments(equations: LinearEquations, point: Point, sizes: Vector) -> 
     functions, evaluate = equations.signed_functions
     if not functions:
         return []
-    moved = [point.state, *(point.state + move for move in np.diag(sizes))]
-    here, *beside = (np.array(evaluate(equations.inputs(point._replace(state=state)))) for state in moved)
+    here, *beside = (np.array(evaluate(equations.inputs(each))) for each in _here_and_beside(point, sizes))
     away = np.abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here)), axis=0)
     return [each for each, is_away in zip(functions, away, strict=True) if not is_away]
 

@@ -32,7 +32,15 @@ def test_a_force_with_continuous_derivatives_is_linearized(force, slopes):
 
 
 @pytest.mark.parametrize(
-    "force", ["-4*x - signum(dot(x))", "-4*x - abs(x)", "-4*x - abs(dot(x))", "-4*x - dot(x)*(2 + signum(x - dot(x)))"]
+    "force",
+    [
+        "-4*x - signum(dot(x))",
+        "-4*x - abs(x)",
+        "-4*x - abs(dot(x))",
+        "-4*x - dot(x)*(2 + signum(x - dot(x)))",
+        "-10^13*x - signum(dot(x))",
+        "-10^13*x - abs(x)/10",
+    ],
 )
 def test_a_force_with_a_jump_or_a_kink_is_not(force):
     with failing(ErrorKind.NOT_ANALYTIC):
