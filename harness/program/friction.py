@@ -17,8 +17,8 @@ from fractions import Fraction
 
 from .differentiation import derivative_name, differentiated
 from .motion_problem import MotionProblem
-from .motion_program import Atom, Call, Expression, Name, Operation, Program, names_used
-from .rewriting import ONE, ZERO, computing, with_numbers
+from .motion_program import Atom, Call, Name, Operation, Program, names_used
+from .rewriting import ONE, ZERO, computing, with_calls, with_numbers
 from .tape import Tape
 
 SLIDING = "sliding"  # in a pattern, the sign that makes the motion slide on its switching surface
@@ -95,13 +95,7 @@ def with_sizes(program: Program, pattern: Pattern, zeros: Collection[str]) -> Pr
     """
     numbers = numbers_in(pattern) | dict.fromkeys(zeros, ZERO)
     known = {Call(Operation.SIGN, (Name(name),)): number for name, number in numbers.items()}
-
-    def written(expression: Expression) -> Expression:
-        if isinstance(expression, Call) and expression not in known:
-            return Call(expression.operation, tuple(map(written, expression.arguments)))
-        return known.get(expression, expression)
-
-    return replace(program, assignments=tuple((name, written(value)) for name, value in program.assignments))
+    return with_calls(program, known)
 
 
 def affine_terms(

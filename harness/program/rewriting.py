@@ -152,6 +152,30 @@ def with_numbers(program: Program, numbers: Mapping[str, Fraction]) -> Program:
     return computing(part, part.outputs)
 
 
+def with_calls(program: Program, known: Mapping[Call, Expression]) -> Program:
+    """Return a program with other expressions in place of some operations.
+
+    Parameters
+    ----------
+    program : Program
+    known : mapping of Call to Expression
+        What replaces an operation. Operations in it are replaced, too.
+
+    Returns
+    -------
+    Program
+        The same inputs and outputs.
+    """
+
+    def written(expression: Expression) -> Expression:
+        expression = known.get(expression, expression) if isinstance(expression, Call) else expression
+        if isinstance(expression, Call):
+            return Call(expression.operation, tuple(map(written, expression.arguments)))
+        return expression
+
+    return replace(program, assignments=tuple((name, written(value)) for name, value in program.assignments))
+
+
 def with_names_for_numbers(expression: Expression, start: str) -> tuple[Expression, dict[str, Fraction]]:
     """Return an expression with a name for each of its numbers, exponents apart.
 

@@ -502,6 +502,8 @@ class HybridMotion:
 
     def _after_jumps(self, pattern: Pattern, t: Any, state: Numbers) -> Pattern:
         """Return the pattern with the signs of functions that other signs change."""
+        if not any(map(self._signs_in, self.problem.signs)):
+            return pattern
         state = self._real_state(pattern, t, state)
         changed = {name for name, value in pattern.items() if value != self.mode.pattern[name]}
         for sign in self.problem.signs:

@@ -280,7 +280,8 @@ class _Search:
         self._t, state = start_of(problem)
         self._first = state[: self._n]
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
-        self._sizes = self._distances(nominal_of(problem).coordinates)
+        self._nominal = nominal_of(problem)
+        self._sizes = self._distances(self._nominal.coordinates)
         self.orientation = np.nan_to_num(self._orientation(self._first)).astype(int)
         for zero in np.flatnonzero(self.orientation == 0)[:1]:
             raise HolonomError(ErrorKind.ORIENTATION_CHANGES, detail=str(zero + 1))
@@ -490,7 +491,7 @@ class _Search:
 
     def _is_smooth(self, q: Vector) -> bool:
         point = self._point(q, np.zeros(len(self._equations.multipliers)))
-        return is_smooth(self._equations, point, nominal_of(self._problem).state)
+        return is_smooth(self._equations, point, self._nominal.state)
 
     def _most_independent(self, q: Vector) -> tuple[int, ...]:
         """Return the most independent constraints at a place, if some are redundant."""

@@ -318,12 +318,10 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     """
     require_analytic(replace(problem, signs=(), tables=(), ends=replace(problem.ends, released=())))
     t, state = state_at(problem, at)
-    point = motion_at(problem, equations, t, state)
     changing = changing_signs(problem, t, state)
-    if changing and not (
-        all(sign.by in (DependsOn.CONFIGURATION, DependsOn.VELOCITY) for sign in changing)
-        and is_smooth(equations, point, nominal_of(problem).state)
-    ):
+    of_state = all(sign.by in (DependsOn.CONFIGURATION, DependsOn.VELOCITY) for sign in changing)
+    point = motion_at(problem, equations, t, state)
+    if changing and not (of_state and is_smooth(equations, point, nominal_of(problem).state)):
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing[0].of)
     with np.errstate(invalid="ignore"):
         found = linearized(problem, equations, point, t)

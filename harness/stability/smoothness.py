@@ -7,7 +7,6 @@ its eigenvalues decide about stability where the right sides have continuous der
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 from itertools import product
 
@@ -15,10 +14,11 @@ import numpy as np
 
 from ..program.motion_program import Call, Expression, Operation, Program
 from ..program.numpy_function import NumpyFunction
+from ..program.rewriting import with_calls
 from ..simulation.matrices import Vector
-from .linear_equations import SIGNED, LinearEquations, Point
+from .linear_equations import LinearEquations, Point
 
-ON_SURFACE = 1e-6  # of what they are beside: switching functions, and effects of their signs, that count as zero
+ON_SURFACE = 1e-6  # of what they are nearby: switching functions, and effects of their signs, that count as zero
 MOST_SIGNS = 4  # that are zero together; their combinations are tried
 
 
@@ -44,12 +44,12 @@ def is_smooth(equations: LinearEquations, point: Point, sizes: Vector) -> bool:
         NumpyFunction(_with_signs(equations.program, dict(zip(zeros, signs, strict=True))))
         for signs in product((1, -1), repeat=len(zeros))
     ]
-    inputs = [equations.inputs(each) for each in _here_and_beside(point, sizes)]
-    here, *beside = (np.ptp([side(each) for side in sides], axis=0) for each in inputs)
-    return bool((here <= ON_SURFACE * np.max(beside, axis=0)).all())
+    inputs = [equations.inputs(each) for each in _here_and_nearby(point, sizes)]
+    here, *nearby = (np.ptp([side(each) for side in sides], axis=0) for each in inputs)
+    return bool((here <= ON_SURFACE * np.max(nearby, axis=0)).all())
 
 
-def _here_and_beside(point: Point, sizes: Vector) -> list[Point]:
+def _here_and_nearby(point: Point, sizes: Vector) -> list[Point]:
     """Return a point, and the points that are a nominal size away in one direction."""
     return [point, *(point._replace(state=point.state + move) for move in np.diag(sizes))]
 
@@ -59,21 +59,15 @@ def _zero_arguments(equations: LinearEquations, point: Point, sizes: Vector) -> 
     functions, evaluate = equations.signed_functions
     if not functions:
         return []
-    here, *beside = (np.array(evaluate(equations.inputs(each))) for each in _here_and_beside(point, sizes))
-    away = np.abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(beside, here)), axis=0)
+    here, *nearby = (np.array(evaluate(equations.inputs(each))) for each in _here_and_nearby(point, sizes))
+    away = np.abs(here) > ON_SURFACE * np.max(np.abs(np.subtract(nearby, here)), axis=0)
     return [each for each, is_away in zip(functions, away, strict=True) if not is_away]
 
 
 def _with_signs(program: Program, signs: Mapping[Expression, int]) -> Program:
     """Return a program with numbers for the signs of some functions."""
-
-    def written(expression: Expression) -> Expression:
-        if not isinstance(expression, Call):
-            return expression
-        arguments = tuple(map(written, expression.arguments))
-        if expression.operation not in SIGNED or expression.arguments[0] not in signs:
-            return Call(expression.operation, arguments)
-        sign = Fraction(signs[expression.arguments[0]])
-        return sign if expression.operation is Operation.SIGN else Call(Operation.MULTIPLY, (sign, arguments[0]))
-
-    return replace(program, assignments=tuple((name, written(value)) for name, value in program.assignments))
+    known: dict[Call, Expression] = {}
+    for function, sign in signs.items():
+        known[Call(Operation.SIGN, (function,))] = Fraction(sign)
+        known[Call(Operation.ABS, (function,))] = Call(Operation.MULTIPLY, (Fraction(sign), function))
+    return with_calls(program, known)

@@ -102,7 +102,8 @@ class RowMaker:
 
     def __init__(self, plan: Plan) -> None:
         quantities = [output.quantity for output in plan.outputs if output.quantity is not None]
-        problem = self._problem = replace(plan.problem, recorded=program_of(quantities))
+        along = [output.quantity for output in plan.outputs if output.kind in ALONG]
+        problem = self._problem = replace(plan.problem, recorded=program_of(along) if along else None)
         self.plan = plan
         require_known(problem, quantities)
         _require_smooth(problem, plan.outputs)

@@ -155,11 +155,10 @@
 
 (defun restricted (e weight names)
   "The expression whose functions of what the condition decides have values, not too large, where its weight is zero."
-  (if (or (atom e) (member 'array (car e)))
+  (if (or (atom e) (member 'array (car e)) (every #'(lambda (name) (free e name)) names))
       e
       (let ((parts (mapcar #'(lambda (part) (restricted part weight names)) (cdr e))))
-        (cond ((not (some #'(lambda (name) (not (free e name))) names)) e)
-              ((exponential-p e) (power (first parts) (mul weight (second parts))))
+        (cond ((exponential-p e) (power (first parts) (mul weight (second parts))))
               ((member (caar e) '(%cosh %sinh)) (take (list (caar e)) (mul weight (first parts))))
               ((and (partial-p e) (some #'(lambda (name) (not (free (second e) name))) names))
                (simplifya (list* (car e) (with-value-inside (caar e) (first parts) weight) (rest parts)) nil))
