@@ -67,6 +67,19 @@
               ((member (caar part) operators) (if (not (member part found :test #'alike1)) (push part found)))
               (t (setq waiting (append (cdr part) waiting))))))))
 
+(defun $different_roots (e)
+  "The different powers b^(p/q) in an expression, b^(-p/q) as these."
+  (mlist-of (remove-duplicates (roots-in e) :test #'alike1 :from-end t)))
+
+(defun roots-in (e)
+  (mapcan #'(lambda (power)
+              (destructuring-bind (base exponent) (cdr power)
+                (append (if (and ($ratnump exponent) (not (integerp exponent)))
+                            (list (power base (take '(mabs) exponent))))
+                        (roots-in base)
+                        (roots-in exponent))))
+          (cdr (applications-of-any '(mexpt) e))))
+
 (defun $name_around (before name after)
   "The name with a prefix and a suffix; concat would take  set,  an operator, by its sign {."
   (intern-invert-case (concatenate 'string "$" before (characters-of-name name) after)))
