@@ -3,8 +3,8 @@
 With A = L L^T and every row of J scaled to length one, W = L^-1 J^T D holds the constraints' directions as columns.
 Its singular values measure their independence (Golub & Van Loan, Matrix Computations, section 5.3).
 
-Where A is not positive definite, A + rho J^T J takes its place: under J a = -c, with h - rho J^T c for h, it has the
-same accelerations and the same multipliers.
+Where A is not positive definite, A + J^T rho J with a diagonal rho takes its place: under J a = -c, with h - J^T rho c
+for h, it has the same accelerations and the same multipliers.
 """
 
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class WeightedConstraints:
     inverse: Matrix  # shape (n, n): L^-1
     scale: Vector  # shape (g,): D, the factors that bring the columns of W to length one
     directions: Matrix  # shape (n, g): W = L^-1 J^T D
-    stiffening: Matrix | None  # shape (n, g): rho J^T where A is not positive definite
+    stiffening: Matrix | None  # shape (n, g): J^T rho where A is not positive definite
 
     def singular_values(self) -> Vector:
         """Return the singular values of W.
@@ -68,9 +68,8 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     rows = jacobian / peaks[..., None]
     factors, stiffening = _cholesky(mass), None
     if factors is None:
-        masses = np.abs(np.diagonal(mass, axis1=-2, axis2=-1)).sum(axis=-1)
-        stiffening = masses[..., None, None] / max(1, rows.shape[-2]) * np.matrix_transpose(rows)
-        factors, stiffening = _cholesky(mass + stiffening @ rows), stiffening / peaks[..., None, :]
+        stiffening = _stiffening(mass, jacobian)
+        factors = _cholesky(mass + stiffening @ jacobian)
     if factors is None:
         masses = np.linalg.eigvalsh(mass)
         indefinite = (masses[..., 0] < -NEGATIVE * np.max(np.abs(masses), axis=-1)).any()
@@ -78,6 +77,14 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     directions = factors[1] @ np.matrix_transpose(rows)
     lengths = or_one(np.sqrt(np.einsum("...sb,...sb->...b", directions, directions)))
     return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths[..., None, :], stiffening)
+
+
+def _stiffening(mass: Matrix, jacobian: Matrix) -> Matrix:
+    """Return J^T rho with masses of the size that A has along each constraint, in any units."""
+    lengths, sizes = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))[..., None, :], np.abs(jacobian)
+    along = np.divide(sizes, lengths, out=np.zeros_like(sizes), where=lengths > 0).max(axis=-1, initial=0.0)
+    peaks = np.where(along > 0, along, or_one(sizes.max(axis=-1, initial=0.0)))
+    return 2 / peaks[..., None, :] ** 2 * np.matrix_transpose(jacobian)
 
 
 def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:

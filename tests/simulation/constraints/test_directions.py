@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy
 
 from holonom.simulation.constraints.directions import weighted_constraints
 
@@ -26,6 +27,18 @@ def test_units_of_the_coordinates_make_no_mass_singular():
         weighted = weighted_constraints(mass, np.ones((1, 2)))
         assert weighted.stiffening is None
         np.testing.assert_allclose(weighted.factor @ weighted.factor.T, mass, rtol=1e-14)
+
+
+@pytest.mark.parametrize("length", [1.0, 1e-3, 1e-9])
+def test_a_body_on_a_joint_has_the_same_directions_in_any_unit_of_length(length):
+    e = np.array([0.4, 0.5, 0.6, np.sqrt(1 - 0.77)])
+    L = np.array([[-e[1], e[0], e[3], -e[2]], [-e[2], -e[3], e[0], e[1]], [-e[3], e[2], -e[1], e[0]]])
+    mass = scipy.linalg.block_diag(np.eye(3), 4 * L.T @ np.diag([0.1, 0.2, 0.3]) @ L)
+    joint = np.hstack([np.eye(3), np.array([L[0] + e, L[1], L[2]])])
+    jacobian = np.vstack([joint, np.concatenate([np.zeros(3), 2 * e])])
+    units = np.concatenate([np.ones(3), np.full(4, length)])  # of x/length, for masses of one
+    values = weighted_constraints(mass * np.outer(units, units), jacobian * units).singular_values()
+    np.testing.assert_allclose(values, weighted_constraints(mass, jacobian).singular_values(), rtol=1e-9)
 
 
 def test_several_states_with_a_singular_mass_matrix_have_each_its_own_metric():
