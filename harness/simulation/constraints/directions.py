@@ -80,7 +80,7 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 
 
 def _stiffening(mass: Matrix, jacobian: Matrix) -> Matrix:
-    """Return J^T rho with masses of the size that A has along each constraint, in any units."""
+    """Return J^T rho with masses of the size that A has along each constraint."""
     lengths, sizes = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))[..., None, :], np.abs(jacobian)
     along = np.divide(sizes, lengths, out=np.zeros_like(sizes), where=lengths > 0).max(axis=-1, initial=0.0)
     peaks = np.where(along > 0, along, or_one(sizes.max(axis=-1, initial=0.0)))

@@ -58,3 +58,14 @@
       (if (eql mantissa (expt 10 digits))
           (values (expt 10 (1- digits)) (1+ exponent))
           (values mantissa exponent)))))
+
+(defun $decimal_fraction (x)
+  "The decimal of as many digits as a floating-point number holds, where it is next to one; or false."
+  (multiple-value-bind (value bits)
+      (if (floatp x) (values (rational x) 53) (values (rational-of-bigfloat x) (car (last (car x)))))
+    (if (eql value 0)
+        0
+        (let ((digits (floor (* bits (log 2d0 10d0)))))
+          (multiple-value-bind (mantissa exponent) (decimal-parts (abs value) digits)
+            (let ((decimal (* (signum value) mantissa (expt 10 (- (1+ exponent) digits)))))
+              (if (<= (abs (- decimal value)) (* (abs value) (expt 2 (- 1 bits)))) (maxima-number decimal))))))))
