@@ -61,6 +61,9 @@ class MotionSeries(Shown):
     switch: str | None = entry(
         "A function with whose sign the motion is another than the series; null where there is none.", None
     )
+    switching_time: NumberText | None = entry(
+        "The first time after t0 at which it changes; null where that is not of the time alone.", None
+    )
     polynomial: bool = entry(
         "Whether the equations of motion are satisfied identically by the series as they end here.", False
     )
@@ -194,7 +197,7 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
     """
     with mpmath.workdps(motion.digits):
         step = mpmath.mpf(time.numerator) / time.denominator - number(motion.t0)
-        if motion.switch is not None and step:
+        if motion.switch is not None and step and not _is_before_switching(motion, step):
             raise HolonomError(ErrorKind.SERIES_SWITCHED, motion.scene, motion.switch)
         _require_inside(motion, time, float(abs(step)))
         series = {name: numbers(texts) for name, texts in motion.all_series()}
@@ -212,6 +215,11 @@ def values_at(motion: MotionSeries, time: Fraction) -> Values:
             )
         sums = {name: mpmath.polyval(coefficients[::-1], step) for name, coefficients in series.items()}
         return Values(time, sums, left_out)
+
+
+def _is_before_switching(motion: MotionSeries, step: mpmath.mpf) -> bool:
+    until = motion.switching_time
+    return until is not None and 0 < step <= number(until) - number(motion.t0)
 
 
 def series_document(motion: MotionSeries, values: Values | None = None) -> dict[str, Any]:

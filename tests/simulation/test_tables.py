@@ -15,7 +15,7 @@ from holonom.failures import ErrorKind
 from holonom.program.model import scene_model
 from holonom.program.request import Request
 from holonom.program.table_numbers import TimeFunction
-from holonom.series.power_series import values_at
+from holonom.series.power_series import number, values_at
 from holonom.simulation.time_events import time_events
 
 POINTS = [(0, 0), (1, 2), (1.3, 0.5), (3.5, 1), (4, -1)]
@@ -179,9 +179,21 @@ def test_a_series_was_summed_up_where_the_law_is_another(driven):
     series = driven("if t < 1 then 0 else 6*(t - 1)^2").series(order=12)
     assert series.switch == "t-1"
     assert values_at(series, Fraction(0)).values["x"] == 1
-    with failing(ErrorKind.SERIES_SWITCHED, "t-1"):
-        values_at(series, Fraction(3, 2))
+    assert number(series.switching_time) == 1
+    assert values_at(series, Fraction(3, 4)).values["x"] == -0.5
+    for time in (Fraction(3, 2), Fraction(-1, 4)):
+        with failing(ErrorKind.SERIES_SWITCHED, "t-1"):
+            values_at(series, time)
     assert driven("t^2").series(order=4).switch is None
+
+
+def test_a_series_under_a_table_is_summed_up_to_its_next_point(driven):
+    series = driven("table([[0, 0], [1/2, 1], [4, 0]])").series(order=4)
+    assert number(series.switching_time) == 0.5
+    values_at(series, Fraction(1, 2))
+    with failing(ErrorKind.SERIES_SWITCHED, "t-1/2"):
+        values_at(series, Fraction(3, 4))
+    assert driven("if t^2 < 2 then 1 else t^3").series(order=4).switching_time is None
 
 
 def test_what_an_if_calls_in_its_branches_was_left_uncalled_and_refused(driven):
