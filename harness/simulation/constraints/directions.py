@@ -80,11 +80,24 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 
 
 def _stiffening(mass: Matrix, jacobian: Matrix) -> Matrix:
-    """Return J^T rho with masses of the size that A has along each constraint."""
-    lengths, sizes = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))[..., None, :], np.abs(jacobian)
-    along = np.divide(sizes, lengths, out=np.zeros_like(sizes), where=lengths > 0).max(axis=-1, initial=0.0)
-    peaks = np.where(along > 0, along, or_one(sizes.max(axis=-1, initial=0.0)))
+    """Return J^T rho with masses of the size that A has along each constraint.
+
+    Massless coordinates have those that the constraints give them which contain others.
+    """
+    sizes, lengths = np.abs(jacobian), np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
+    while True:
+        peaks = _ratios(sizes, lengths[..., None, :]).max(axis=-1, initial=0.0)
+        given = np.where(lengths > 0, 0.0, _ratios(sizes, peaks[..., None]).max(axis=-2, initial=0.0))
+        if not given.any():
+            break
+        lengths = lengths + given
+    peaks = np.where(peaks > 0, peaks, or_one(sizes.max(axis=-1, initial=0.0)))
     return 2 / peaks[..., None, :] ** 2 * np.matrix_transpose(jacobian)
+
+
+def _ratios(sizes: Matrix, lengths: Matrix) -> Matrix:
+    """Return sizes divided by lengths, zero where these are."""
+    return np.where(lengths > 0, sizes / or_one(lengths), 0.0)
 
 
 def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
