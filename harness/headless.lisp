@@ -54,22 +54,6 @@
   (flet ((spelt (item) (if (stringp item) (maybe-invert-string-case item) item)))
     (error 'unreadable-statement :text (apply #'format nil control (mapcar #'spelt arguments)))))
 
-;; A number with more digits than it would hold is read exactly.
-(let ((read-number (symbol-function 'make-number)))
-  (defun make-number (parts)
-    (destructuring-bind (whole &optional point digits marker sign exponent) (reverse parts)
-      (let ((most (if (equal marker '(#\B)) $fpprec 15))
-            (power (if exponent (parse-integer (coerce (append sign exponent) 'string)) 0)))
-        (if (and point
-                 (> (length (member #\0 (append whole digits) :test-not #'eql)) most)
-                 (< (abs power) 300))
-            (decimal-number (append whole digits) (- power (length digits)))
-            (funcall read-number parts))))))
-
-(defun decimal-number (digits power)
-  (let ((number (* (parse-integer (coerce digits 'string)) (expt 10 power))))
-    (if (integerp number) number (list '(rat simp) (numerator number) (denominator number)))))
-
 ;; A scene that was copied out of the library's folder, or is read by another installation, means this library. Where it
 ;; is loaded, as in an image, its list of files is not read again.
 (let ((load-file (symbol-function '$load)))

@@ -59,13 +59,42 @@
           (values (expt 10 (1- digits)) (1+ exponent))
           (values mantissa exponent)))))
 
+;;; ---- decimals ------------------------------------------------------------------------------
+
+;; Maxima reads a decimal as the floating-point number nearest to it, which is remembered here. Where two decimals have
+;; the same, the second one is read as a fraction, as is a bigfloat with more digits than fpprec.
+(defvar *decimals* (make-hash-table) "floating-point number -> the decimal that it was read from")
+
+(unless (get 'make-number 'with-decimals)
+  (setf (get 'make-number 'with-decimals) t)
+  (let ((read-number (symbol-function 'make-number)))
+    (setf (symbol-function 'make-number)
+          #'(lambda (parts) (with-decimal (funcall read-number (copy-list parts)) (reverse parts))))))
+
+(defun with-decimal (number parts)
+  "The number as it is read, or as a fraction. parts: lists of characters: digits, point, digits, marker, sign, digits."
+  (destructuring-bind (whole &optional point digits marker sign power) parts
+    (let ((power (if power (parse-integer (coerce (append sign power) 'string)) 0)) (significant (append whole digits)))
+      (if (and point significant (not (eql number 0d0)) (< (abs power) 400))
+          (let ((decimal (* (parse-integer (coerce significant 'string)) (expt 10 (- power (length digits))))))
+            (if (if (equal marker '(#\B))
+                    (<= (length significant) $fpprec)
+                    (eql decimal (or (gethash number *decimals*) (setf (gethash number *decimals*) decimal))))
+                number
+                (maxima-number decimal)))
+          number))))
+
 (defun $decimal_fraction (x)
-  "The decimal of as many digits as a floating-point number holds, where it is next to one; or false."
+  "The decimal that a number was read from, or one of as many digits as it holds that is next to it; or false."
   (multiple-value-bind (value bits)
       (if (floatp x) (values (rational x) 53) (values (rational-of-bigfloat x) (car (last (car x)))))
-    (if (eql value 0)
-        0
-        (let ((digits (floor (* bits (log 2d0 10d0)))))
-          (multiple-value-bind (mantissa exponent) (decimal-parts (abs value) digits)
-            (let ((decimal (* (signum value) mantissa (expt 10 (- (1+ exponent) digits)))))
-              (if (<= (abs (- decimal value)) (* (abs value) (expt 2 (- 1 bits)))) (maxima-number decimal))))))))
+    (let ((read-from (if (floatp x) (gethash (abs x) *decimals*))))
+      (cond (read-from (maxima-number (* (signum value) read-from)))
+            ((eql value 0) 0)
+            (t (short-decimal value bits))))))
+
+(defun short-decimal (value bits)
+  (let ((digits (floor (* bits (log 2d0 10d0)))))
+    (multiple-value-bind (mantissa exponent) (decimal-parts (abs value) digits)
+      (let ((decimal (* (signum value) mantissa (expt 10 (- (1+ exponent) digits)))))
+        (if (<= (abs (- decimal value)) (* (abs value) (expt 2 (- 1 bits)))) (maxima-number decimal))))))
