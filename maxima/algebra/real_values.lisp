@@ -17,11 +17,12 @@
   "A list of the first part that is not real, empty if there is none."
   (cons '(mlist) (catch 'unreal (require-real-parts e) nil)))
 
-(defun $unreal_parts_in_entry (e)
-  "The same of all that the lists and equations of an entry hold."
-  (if (or ($listp e) ($equationp e))
+(defun $unreal_parts_in_entry (e &optional in-equation)
+  "The same of all that the lists of an entry hold, and the equations that are in no other one."
+  (if (or ($listp e) (and ($equationp e) (not in-equation)))
       (dolist (part (cdr e) '((mlist)))
-        (let ((found ($unreal_parts_in_entry part))) (when (cdr found) (return found))))
+        (let ((found ($unreal_parts_in_entry part (or in-equation ($equationp e)))))
+          (when (cdr found) (return found))))
       ($unreal_parts e)))
 
 (defun require-real-parts (e)
