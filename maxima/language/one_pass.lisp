@@ -68,17 +68,15 @@
               (t (setq waiting (append (cdr part) waiting))))))))
 
 (defun $different_roots (e)
-  "The different powers b^(p/q) in an expression, b^(-p/q) as these."
+  "The different powers b^(p/q) in an expression, b^(-p/q) as these, sums in the order in which they are displayed."
   (mlist-of (remove-duplicates (roots-in e) :test #'alike1 :from-end t)))
 
 (defun roots-in (e)
-  (mapcan #'(lambda (power)
-              (destructuring-bind (base exponent) (cdr power)
-                (append (if (and ($ratnump exponent) (not (integerp exponent)))
-                            (list (power base (take '(mabs) exponent))))
-                        (roots-in base)
-                        (roots-in exponent))))
-          (cdr (applications-of-any '(mexpt) e))))
+  (cond ((or (atom e) (member 'array (car e))) nil)
+        ((specrepp e) (roots-in (specdisrep e)))
+        (t (append (if (and (eq (caar e) 'mexpt) ($ratnump (third e)) (not (integerp (third e))))
+                       (list (power (second e) (take '(mabs) (third e)))))
+                   (mapcan #'roots-in (if (eq (caar e) 'mplus) (reverse (cdr e)) (cdr e)))))))
 
 (defun $name_around (before name after)
   "The name with a prefix and a suffix; concat would take  set,  an operator, by its sign {."
