@@ -85,7 +85,7 @@ class MotionVerdict:
         minimum=2,
     )
     first: FirstCoefficient | None = entry(
-        "The first coefficient that is not zero; null where the free motion shows that the motion is not free."
+        "The first coefficient that is not zero; null where the motion is not free for another reason."
     )
 
 

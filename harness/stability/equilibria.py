@@ -38,7 +38,7 @@ from .equivalence import Equivalence
 from .linear_equations import LinearEquations, Point
 from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .repetition import reversible, whole_turns
-from .smoothness import is_smooth
+from .smoothness import is_smooth, with_limits
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ PERTURBED = 1e-9  # relative error of A that eigenvalues are certain against, to
 PERTURBED_FAMILY = 1e-6  # the same where Newton's method does not find the place to the last digits
 NEARLY_DEFECTIVE = 1e6  # condition of an eigenvalue above which first order decides nothing
 EULER_PARAMETERS = 4
-PROBES = 5  # random states at which Euler parameters are looked for
+PROBES = 5  # random states at which Euler parameters, and divisions by zero, are looked for
 
 
 class Stability(StrEnum):
@@ -275,16 +275,22 @@ class _Search:
     """Newton's method for r = 0, f = 0, in units of the coordinates' sizes."""
 
     def __init__(self, problem: MotionProblem, equations: LinearEquations, controls: Sequence[float]) -> None:
-        self._problem, self._equations, self._independent = problem, equations, list(problem.independent)
+        self._problem, self._given, self._independent = problem, equations, list(problem.independent)
         self._n = len(equations.coordinates)
         self._t, state = start_of(problem)
         self._first = state[: self._n]
         self._controls = np.concatenate([controls, np.zeros(2 * len(controls))])
         self._nominal = nominal_of(problem)
+        self._equations = with_limits(equations, self._somewhere_at_rest(), self._nominal.state)
         self._sizes = self._distances(self._nominal.coordinates)
         self.orientation = np.nan_to_num(self._orientation(self._first)).astype(int)
         for zero in np.flatnonzero(self.orientation == 0)[:1]:
             raise HolonomError(ErrorKind.ORIENTATION_CHANGES, detail=str(zero + 1))
+
+    def _somewhere_at_rest(self) -> list[Point]:
+        random = np.random.default_rng(0)
+        places = self._first + self._nominal.coordinates * random.normal(size=(PROBES, self._n))
+        return [self._point(q, random.normal(size=len(self._given.multipliers))) for q in places]
 
     def _distances(self, nominal: Vector) -> Vector:
         """Return a distance for each coordinate at which the stiffness changes.
@@ -491,7 +497,7 @@ class _Search:
 
     def _is_smooth(self, q: Vector) -> bool:
         point = self._point(q, np.zeros(len(self._equations.multipliers)))
-        return is_smooth(self._equations, point, self._nominal.state)
+        return is_smooth(self._given, point, self._nominal.state)
 
     def _most_independent(self, q: Vector) -> tuple[int, ...]:
         """Return the most independent constraints at a place, if some are redundant."""
@@ -509,7 +515,7 @@ class _Search:
         multipliers = self._problem.multipliers
         others = tuple(each for beta, each in enumerate(multipliers) if beta not in independent)
         problem = replace(self._problem, motion=replace(self._problem.motion, redundant=others))
-        return _Search(problem, self._equations, self._controls[: len(self._equations.controls)])
+        return _Search(problem, self._given, self._controls[: len(self._equations.controls)])
 
     def _satisfies_all_constraints(self, solution: tuple[Vector, Vector]) -> bool:
         """Return True if all constraints hold.
@@ -530,7 +536,7 @@ class _Search:
         return self._equations.at(self._point(q, multipliers), range(len(multipliers)))
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
-        linear = linearized(found.problem, self._equations, self._point(found.q, found.multipliers))
+        linear = linearized(found.problem, self._given, self._point(found.q, found.multipliers))
         return Equilibrium(
             name,
             dict(zip(self._equations.coordinates, map(float, found.q), strict=True)),
@@ -547,8 +553,8 @@ class _Search:
 
         For forces with a potential it is the second variation.
         """
-        here = self._at(q, multipliers)
-        if not all(np.isfinite(here[name]).all() for name in ("equation", "equation_by_q")):
+        here = self._with_limits_at(q, multipliers)
+        if not all(np.isfinite(each).all() for name, each in here.items() if not name.startswith("output")):
             return None
         try:
             tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
@@ -563,6 +569,12 @@ class _Search:
         bound = np.linalg.norm(terms, 2) if terms.size else 0.0
         stiffness = tangent.basis.T @ changes @ tangent.basis
         return stiffness, float(bound), self._error(q, multipliers, tangent, stiffness)
+
+    def _with_limits_at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
+        point, equations = self._point(q, multipliers), self._equations
+        if equations is not self._given:
+            equations = with_limits(self._given, [point], self._nominal.state)
+        return equations.at(point, self._independent)
 
     def _error(self, q: Vector, multipliers: Vector, tangent: Tangent, stiffness: Matrix) -> float:
         """Return the error of the stiffness.

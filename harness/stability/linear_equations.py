@@ -7,7 +7,7 @@ With r_s the left side of Lagrange's equations less the right one, deviations sa
 and the first and second time derivatives of the latter.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
@@ -86,9 +86,37 @@ class LinearEquations:
         functions = list(
             dict.fromkeys(call.arguments[0] for call in calls_of(self.program) if call.operation in SIGNED)
         )
+        return functions, self.evaluating(functions)
+
+    def evaluating(self, functions: Iterable[Expression]) -> NumpyFunction:
+        """Return the values of functions that the program contains.
+
+        Parameters
+        ----------
+        functions : iterable of Expression
+
+        Returns
+        -------
+        NumpyFunction
+            Of the inputs of the program.
+        """
         named = {f"function[{place}]": each for place, each in enumerate(functions)}
         assignments, outputs = (*self.program.assignments, *named.items()), {name: Name(name) for name in named}
-        return functions, NumpyFunction(replace(self.program, assignments=assignments, outputs=outputs))
+        return NumpyFunction(replace(self.program, assignments=assignments, outputs=outputs))
+
+    def rows(self, point: "Point") -> Vector:
+        """Return the values of the program.
+
+        Parameters
+        ----------
+        point : Point
+            Or several of them, with a last axis more, which the result then has.
+
+        Returns
+        -------
+        ndarray, shape (outputs,)
+        """
+        return self._evaluate(self.inputs(point))
 
     @cached_property
     def _orientations(self) -> NumpyFunction:
@@ -166,12 +194,11 @@ class LinearEquations:
         for row, size in zip(ROWS, (n, g, g, g, own), strict=True):
             found[row] = np.zeros((size, *points))
             found |= {f"{row}_by_{group}": np.zeros((size, columns, *points)) for group, columns in sizes.items()}
-        inputs = self.inputs(point)
         if random is None:
-            values = self._evaluate(inputs)
+            values = self.rows(point)
         else:
             errors = np.finfo(float).eps * random.uniform(-1, 1, (FACTORS, *points))
-            values = self._evaluate_roughly([*inputs, *(1 + errors)])
+            values = self._evaluate_roughly([*self.inputs(point), *(1 + errors)])
         for (array, place), value in zip(self._places, values, strict=True):
             found[array][place] = value
         of_motion = ("equation", "A_rate", "output")

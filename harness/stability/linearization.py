@@ -44,7 +44,7 @@ from ..simulation.result import Simulation
 from ..simulation.simulate import simulate
 from ..structs import Documented, computed, entry, with_attributes
 from .linear_equations import LinearEquations, Point
-from .smoothness import ON_SURFACE, is_smooth
+from .smoothness import ON_SURFACE, is_smooth, with_limits
 from .tangent import Tangent
 
 if TYPE_CHECKING:
@@ -431,16 +431,20 @@ def tangent_at(
         The constraints are singular there.
     """
     independent = problem.independent
-    here = _evaluated(equations, point, independent)
+    here = _evaluated(problem, equations, point, independent)
     tangent = _tangent(equations, here)
     if tangent.rank < len(independent) and problem.obstruction is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     return here, tangent
 
 
-def _evaluated(equations: LinearEquations, point: Point, independent: Sequence[int]) -> Mapping[str, Matrix]:
-    """Evaluate the linearised equations where those of motion have values."""
+def _evaluated(
+    problem: MotionProblem, equations: LinearEquations, point: Point, independent: Sequence[int]
+) -> Mapping[str, Matrix]:
+    """Evaluate the linearised equations, by limits where a formula divides by zero."""
     here = equations.at(point, independent)
+    if not all(np.isfinite(each).all() for each in here.values()):
+        here = with_limits(equations, [point], nominal_of(problem).state).at(point, independent)
     if not all(np.isfinite(each).all() for name, each in here.items() if not name.startswith("output")):
         raise HolonomError(ErrorKind.NO_DERIVATIVES, time=point.t)
     return here
@@ -607,7 +611,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
     n, rows, multipliers = len(equations.coordinates), list(problem.independent), np.zeros(len(equations.multipliers))
     none = np.zeros(len(equations.found) + equations.drives)
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t), none)
-    here = _evaluated(equations, at_rest, rows)
+    here = _evaluated(problem, equations, at_rest, rows)
     tangent = _tangent(equations, here)
     if not tangent.determined:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=t)

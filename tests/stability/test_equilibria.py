@@ -103,6 +103,8 @@ def test_controls_are_constant():
         ("potential_energy = x^2 + y^2, forces = [-dot(x), 0]", Stability.STABLE),  # y swings on
         ("potential_energy = x^2 + y^2, forces = [3*dot(y) - dot(x), -3*dot(x)]", Stability.ASYMPTOTIC),
         ("potential_energy = x^2 + y^2, forces = [3*dot(y), -3*dot(x)]", Stability.STABLE),  # gyroscopic
+        ("potential_energy = x^2 + y^2, forces = [-dot(x)*abs(dot(x)), -y^2*dot(y)^3]", Stability.STABLE),
+        ("potential_energy = x^2 + y^2, forces = [dot(x)*abs(dot(x)), 0]", Stability.UNDECIDED),
         ("potential_energy = x^2, forces = [y, x - 2*y]", Stability.STABLE),  # of a potential
         ("potential_energy = x^2, forces = [a = [y, -x], b = [-y, x - 2*y]]", Stability.STABLE),
         ("potential_energy = x^2 + y^2, forces = [dot(y), dot(x)]", Stability.UNSTABLE),  # takes and feeds
@@ -456,12 +458,6 @@ def test_an_angle_that_turns_change_is_not_counted_by_its_sine():
 def test_equilibria_next_to_each_other_are_decided(potential, expected):
     found = of_particle(f"potential_energy = {potential}", "x").equilibria()
     assert [(pytest.approx(each.coordinates["x"]), each.stability) for each in found] == expected
-
-
-def test_a_drag_without_a_derivative_at_rest_ended_in_an_internal_error():
-    with pytest.raises(HolonomError) as refused:
-        of_particle("potential_energy = x^2 + y^2, forces = -sqrt(dot(x)^2 + dot(y)^2)*[dot(x), dot(y)]").equilibria()
-    assert refused.value.kind is ErrorKind.NO_DERIVATIVES
 
 
 def test_forces_without_a_value_at_zero_ended_in_an_internal_error():
