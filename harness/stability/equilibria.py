@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from ..failures import ErrorKind, HolonomError
 from ..language import translatable
 from ..program.motion_problem import DependsOn, MotionProblem, require_analytic, require_laws
+from ..program.motion_program import names_used
 from ..schema import PAIRS, NumberText
 from ..shown import Shown
 from ..simulation.constraints.directions import or_one
@@ -134,7 +135,7 @@ class Equilibria(Documented, Shown):
     singular: int = entry(
         "Starts that led to singular configurations, or where signs change, which are not classified.", minimum=0
     )
-    turns: tuple[str, ...] = entry("Coordinates that whole turns do not change.")
+    turns: tuple[str, ...] = entry("Coordinates in the equations that whole turns do not change.")
     reversals: tuple[tuple[str, ...], ...] = entry("Euler parameters of each body; both signs are one orientation.")
     count: int | None = entry(
         "Number of real solutions up to turns and signs, with the initial state's orientations, by a Groebner basis "
@@ -219,6 +220,7 @@ def find_equilibria(
     same = search.equivalence(np.random.default_rng(seed))
     rational = _rational(problem, equations, controls)
     turns, *reversals = (tuple(equations.coordinates[k] for k in places) for places in (same.turns, *same.reversals))
+    turns = tuple(name for name in turns if name in names_used(equations.program))
     solutions = _all_solutions(problem, equations, values | rational, turns, search.orientation.tolist())
     given = [[each.coordinates[name] for name in equations.coordinates] for each in near]
     given += [] if solutions is None else solutions.approximate(equations.coordinates)
@@ -460,7 +462,7 @@ class _Search:
         for q, multipliers in filter(self._satisfies_all_constraints, self._solved(starts)):
             if not self._is_oriented(q):
                 continue
-            q = same.chosen(q)
+            q = self._zeroed(same.chosen(q))
             if any(self._close(q, other.q, same) for other in known):
                 continue
             known_multipliers = np.abs(multipliers) > self._uncertainty(q, multipliers, self._rough(q, multipliers))
@@ -765,15 +767,19 @@ class _Solution(NamedTuple):
         return np.linalg.svd(self.stiffness, compute_uv=False)
 
     @property
+    def _invariants(self) -> Vector:
+        return np.concatenate([self._principal, np.linalg.eigvalsh((self.stiffness + self.stiffness.T) / 2)])
+
+    @property
     def isolated(self) -> bool:
         return bool(self._principal.min(initial=np.inf) > self.least)
 
     def same_family(self, other: "_Solution") -> bool:
         """Return True if neither is isolated and multipliers and stiffnesses agree.
 
-        The stiffnesses are the principal ones.
+        The stiffnesses are the principal ones, and those of the symmetric part with their signs.
         """
-        apart = np.max(np.abs(self._principal - other._principal), initial=0.0)
+        apart = np.max(np.abs(self._invariants - other._invariants), initial=0.0)
         alike = _same(self.multipliers, other.multipliers) and apart <= SAME * max(self.bound, other.bound)
         return bool(alike and not self.isolated and not other.isolated)
 

@@ -1,8 +1,9 @@
 """Exact number and values of equilibria of small polynomial equations.
 
 The equations r(q, lambda) = 0 and f(q) = 0 are polynomials in coordinates and multipliers. An angle, which whole
-turns do not change, is replaced by its sine and cosine, with c^2 + s^2 = 1. Numbers are exact, a control not known to
-be rational is the decimal number that is written. From a Groebner basis over the rational numbers follow:
+turns do not change, is replaced by its sine and cosine, with c^2 + s^2 = 1, also in sums of angles. Numbers are exact,
+a control not known to be rational is the decimal number that is written. From a Groebner basis over the rational
+numbers follow:
 
 - There are finitely many complex solutions if and only if a power of each unknown is a leading monomial (Cox, Little &
   O'Shea, Ideals, Varieties, and Algorithms, section 5.3, theorem 6).
@@ -23,7 +24,7 @@ be rational is the decimal number that is written. From a Groebner basis over th
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain, combinations, pairwise, product
@@ -39,7 +40,7 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing, ring
 
 from ..program.arithmetic import Arithmetic, run_program
-from ..program.motion_program import Call, Constant, Expression, Name, Operation, Program, calls_of
+from ..program.motion_program import Constant, Operation, names_used
 from ..program.rewriting import computing
 from .linear_equations import LinearEquations
 
@@ -49,7 +50,7 @@ EXACT = 16  # with more complex solutions, values stay numeric
 NEAR = 1e-9  # relative distance of a numeric value from the exact one
 UNDEFINED = object()  # the value of an expression that is not a polynomial
 MIXED = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29)  # an unknown each: the sum distinguishes most solutions
-ANGLE = {Operation.COS: "cos", Operation.SIN: "sin"}
+TIMES = 8  # with larger multiples of an angle, degrees are too large
 
 
 @dataclass(frozen=True)
@@ -307,62 +308,50 @@ def _polynomials(
     constraints = [f"constraint[{beta}]" for beta in range(1, g + 1)]
     gradients = [[f"constraint_by_q[{beta},{k}]" for k in range(1, n + 1)] for beta in range(1, g + 1)]
     program = computing(equations.program, {*forces, *constraints, *chain(*gradients)})
-    angles = _angles(program, turns)
+    angles = [name for name in turns if name in names_used(program)]
     plain = [
         *(name for name in equations.coordinates if name not in angles),
         *(equations.multipliers[k] for k in independent),
     ]
-    unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ANGLE.values())]
+    unknowns = [*plain, *(f"{kind}({name})" for name in angles for kind in ("cos", "sin"))]
     if not 0 < len(unknowns) <= UNKNOWNS:
         return [], [], [], []
-    polynomials, *generators = ring(unknowns, QQ, grevlex)
-    inputs = dict.fromkeys(program.inputs, polynomials.zero) | dict(zip(unknowns, generators, strict=True))
-    inputs |= dict.fromkeys(angles, UNDEFINED)
-    values = (polynomials(QQ(value.numerator, value.denominator)) for value in controls)
+    with_angles, *generators = ring([*unknowns, *angles], QQ, grevlex)
+    polynomials, *few = ring(unknowns, QQ, grevlex)
+    arithmetic, unknown = _arithmetic(with_angles), dict(zip(unknowns, few, strict=True))
+    inputs = dict.fromkeys(program.inputs, with_angles.zero)
+    inputs |= dict(zip([*unknowns, *angles], generators, strict=True))
+    values = (with_angles(QQ(value.numerator, value.denominator)) for value in controls)
     inputs |= dict(zip(equations.controls, values, strict=True))
-    found = run_program(_with_angles(program, angles), inputs, _arithmetic(polynomials))
-    circles = [inputs[f"cos({name})"] ** 2 + inputs[f"sin({name})"] ** 2 - 1 for name in angles]
+    oriented = equations.orientations
+    found = {
+        name: _without_last(value, polynomials)
+        for each in (program, *([] if oriented is None else [oriented]))
+        for name, value in run_program(each, inputs, arithmetic).items()
+    }
+    circles = [unknown[f"cos({name})"] ** 2 + unknown[f"sin({name})"] ** 2 - 1 for name in angles]
     return (
         [found[name] for name in forces if found.get(name)],
         [found[name] for name in constraints if found.get(name)] + circles,
         [[found.get(name, polynomials.zero) for name in row] for row in gradients],
-        _orientations(equations, angles, inputs, _arithmetic(polynomials)),
+        [] if oriented is None else [found[name] for name in oriented.outputs],
     )
 
 
-def _orientations(
-    equations: LinearEquations, angles: Sequence[str], inputs: Mapping[str, Any], arithmetic: Arithmetic[Any]
-) -> list[Any]:
-    if equations.orientations is None:
-        return []
-    return list(run_program(_with_angles(equations.orientations, angles), inputs, arithmetic).values())
-
-
-def _angles(program: Program, coordinates: Sequence[str]) -> list[str]:
-    """Return the coordinates with sines or cosines."""
-    arguments = {call.arguments[0] for call in calls_of(program) if call.operation in ANGLE}
-    return [name for name in coordinates if Name(name) in arguments]
-
-
-def _with_angles(program: Program, angles: Sequence[str]) -> Program:
-    """Return the program with a name ``cos(phi)`` for such a call."""
-
-    def written(expression: Expression) -> Expression:
-        match expression:
-            case Call(operation, (Name(text),)) if operation in ANGLE and text in angles:
-                return Name(f"{ANGLE[operation]}({text})")
-            case Call(operation, arguments):
-                return Call(operation, tuple(map(written, arguments)))
-        return expression
-
-    return replace(program, assignments=tuple((name, written(each)) for name, each in program.assignments))
+def _without_last(value: Any, polynomials: PolyRing) -> Any:
+    """Return a polynomial in the first unknowns alone, undefined if others occur."""
+    if value is UNDEFINED or any(any(monomial[polynomials.ngens :]) for monomial in value.itermonoms()):
+        return UNDEFINED
+    return polynomials({monomial[: polynomials.ngens]: number for monomial, number in value.iterterms()})
 
 
 def _arithmetic(polynomials: PolyRing) -> Arithmetic[Any]:
     """Return the arithmetic of a ring.
 
-    A product with zero is zero. Other operations than those of the ring are undefined.
+    A product with zero is zero. Sines and cosines are unknowns, or sums of products of them by the addition theorems.
+    Other operations than those of the ring are undefined.
     """
+    unknowns = dict(zip(map(str, polynomials.symbols), polynomials.gens, strict=True))
 
     def number(value: Fraction) -> PolyElement:
         return polynomials(QQ(value.numerator, value.denominator))
@@ -387,7 +376,20 @@ def _arithmetic(polynomials: PolyRing) -> Arithmetic[Any]:
             return UNDEFINED
         return base ** int(exponent) if exponent >= 0 else divided(polynomials.one, base ** int(-exponent))
 
+    def cosine_and_sine(argument: Any) -> tuple[Any, Any]:
+        cosine, sine = polynomials.one, polynomials.zero
+        for monomial, times in argument.iterterms():
+            name = str(polynomials.symbols[monomial.index(max(monomial))])
+            if sum(monomial) != 1 or f"cos({name})" not in unknowns or times.denominator != 1 or abs(times) > TIMES:
+                return UNDEFINED, UNDEFINED
+            c, s = unknowns[f"cos({name})"], unknowns[f"sin({name})"] * (1 if times > 0 else -1)
+            for _ in range(abs(int(times))):
+                cosine, sine = cosine * c - sine * s, sine * c + cosine * s
+        return cosine, sine
+
     known = {
+        Operation.COS: lambda x: UNDEFINED if x is UNDEFINED else cosine_and_sine(x)[0],
+        Operation.SIN: lambda x: UNDEFINED if x is UNDEFINED else cosine_and_sine(x)[1],
         Operation.ADD: total,
         Operation.MULTIPLY: multiplied,
         Operation.SUBTRACT: lambda x, y: total(x, negated(y)),

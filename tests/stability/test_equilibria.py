@@ -69,6 +69,20 @@ def test_a_double_pendulum_has_four():
     assert places[-1, -2].linearization.at_rest
 
 
+def test_equilibria_by_relative_angles_are_counted():
+    """Truth: changes of sign along b, for both a that balance the first equation."""
+    found = holonom.system("""
+      system : holonomic_system(coordinates = [a, b], kinetic_energy = dot(a)^2 + (dot(a) + dot(b))^2/2
+          + dot(a)*(dot(a) + dot(b))*cos(b), potential_energy = [gravity = 20*sin(a) + 10*sin(a + b) + 3*cos(2*b)])$
+      s : holonomic_scene(system, initial_state = [a = 0, b = 0, dot(a) = 0, dot(b) = 0], time_span = [0, 1])$
+    """).equilibria()
+    b = np.linspace(1, 1 + 2 * np.pi, 10001)
+    balanced = np.arctan2(2 + np.cos(b), np.sin(b)) + np.array([[0], [np.pi]])
+    unbalanced = 10 * np.cos(balanced + b) - 6 * np.sin(2 * b)
+    changes = np.count_nonzero(np.diff(np.sign(unbalanced)))
+    assert (found.count, len(found), found.complete, found.turns) == (changes, changes, True, ("a", "b"))
+
+
 def test_an_equilibrium_is_linearised_by_its_name():
     scene = holonom.system(DOUBLE_PENDULUM)
     name = next(each.name for each in scene.equilibria() if each.stability is Stability.STABLE)
@@ -147,6 +161,15 @@ def test_families_are_distinguished_from_each_other_and_from_what_is_isolated():
         2: False,
     }
     assert found.more > 0
+
+
+def test_families_whose_stiffnesses_have_opposite_signs_are_two():
+    """A pendulum that nothing holds sideways: of the upright and the hanging one only the first was listed."""
+    found = of_particle("potential_energy = cos(x)").equilibria()
+    assert [(each.coordinates["x"], each.stability) for each in found] == [
+        (pytest.approx(0, abs=1e-9), Stability.UNSTABLE),
+        (pytest.approx(np.pi), Stability.UNDECIDED),
+    ]
 
 
 def test_singular_configurations_are_left_out():
