@@ -417,7 +417,7 @@ def initial_accelerations(checked: CheckedScene, relations: Relations) -> tuple[
     tuple of Comparison
     """
     system = checked.system
-    derived = solved_for([initial(a) for a in system.accelerations], relations)
+    derived = _by_initial_values(checked, [initial(a) for a in system.accelerations], relations)
     solution = {a: derived[initial(a)] for a in system.accelerations}
     return (
         Comparison(
@@ -446,7 +446,7 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
     tuple of Comparison
     """
     system = checked.system
-    derived = solved_for(system.coordinates, relations)
+    derived = _by_initial_values(checked, system.coordinates, relations)
     rates: dict[sp.Symbol, sp.Expr] = {}
     pairs = []
     for q, series in derived.items():
@@ -464,6 +464,15 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
             certificate=checked.certificate(highest),
         ),
     )
+
+
+def _by_initial_values(checked: CheckedScene, symbols: Sequence[sp.Symbol], relations: Relations) -> Definitions:
+    """Return right sides, in which the state is that at the initial time."""
+    derived = solved_for(symbols, relations)
+    moving = set().union(*(each.free_symbols for each in derived.values())) & {*checked.state}
+    for name in sorted(map(str, moving)):
+        raise NotComparable(translatable("%(name)s, which changes, in place of its initial value"), name=name)
+    return derived
 
 
 def _vanishing(what: str, expressions: Iterable[sp.Expr]) -> Iterable[Pair]:

@@ -21,6 +21,7 @@ import sympy as sp
 from mpmath import mp
 
 from ..description import Description
+from ..expression.trees import Tree
 from ..simulation.matrices import Matrix, Vector
 from .described_motion import DescribedMotion
 from .evaluation import Steps
@@ -37,6 +38,8 @@ LARGER = 100  # rounding errors, in terms of that effect
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 EXACT_DIGITS = 60  # in which exact values are put into the equations
 SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
+PARTED = "Sign", "Abs", "UnitStep", "HalfStep", "Which", "Max", "Min"  # the same in a law
+NEARBY, NEARBY_DIGITS = mp.mpf("1e-60"), 150  # displacement to a limit, and digits there
 MOST_ORIENTATIONS = 2  # with which solutions are counted: each is an unknown more
 ENERGY = sp.Symbol("energy", real=True)
 
@@ -103,7 +106,7 @@ class DescribedEquations:
     def may_feed_energy(self) -> bool:
         """False if no force increases the energy while the controls are constant.
 
-        Forces have a potential, or are gyroscopic or linear and dissipative.
+        Forces have a potential, or are gyroscopic or dissipative: linear, or by the signs of factors of their power.
         """
         q, v = self._groups["q"], self._groups["v"]
         constant = dict.fromkeys([*self._groups["du"], *self._groups["ddu"]], 0)
@@ -114,7 +117,7 @@ class DescribedEquations:
         power = sp.expand((forces - at_rest).dot(v))
         damping = -sp.hessian(power, v) / 2
         linear = not damping.free_symbols and sp.expand(power + (sp.Matrix([v]) * damping).dot(v)) == 0
-        takes = linear and bool(damping.is_positive_semidefinite)
+        takes = bool(damping.is_positive_semidefinite) if linear else bool(sp.factor(power).is_nonpositive)
         return not (takes and all(sp.simplify(each) == 0 for each in slopes - slopes.T))
 
     @property
@@ -145,7 +148,11 @@ class DescribedEquations:
         moving = [symbol for group in ("v", "a", "du", "ddu") for symbol in self._groups[group]]
         constant = {sp.Symbol(name, real=True): sp.Rational(str(value)) for name, value in controls.items()}
         time = {sp.Symbol("t", real=True): sp.Rational(float(self.motion.first_time))}
-        return [each.subs(dict.fromkeys(moving, 0) | constant | time) for each in self._at_rest]
+        given = {
+            sp.Symbol(name, real=True): exact(reaction).subs(self._values | time)
+            for name, reaction in self.motion.scene.prescribed_reactions.items()
+        }
+        return [each.subs(given).subs(dict.fromkeys(moving, 0) | constant | time) for each in self._at_rest]
 
     def orientation(self, point: Mapping[str, float | sp.Expr]) -> list[int | None]:
         """Return the signs that no motion changes.
@@ -193,9 +200,25 @@ class DescribedEquations:
         Raises
         ------
         IrregularPoint
-            One of them has no real value.
+            One of them has no real value around the point.
         """
-        return self._arranged(self._steps.real_at({sp.Symbol(name, real=True): mp.mpf(x) for name, x in point.items()}))
+        values = {sp.Symbol(name, real=True): mp.mpf(x) for name, x in point.items()}
+        try:
+            return self._arranged(self._steps.real_at(values))
+        except IrregularPoint:
+            return self._arranged(self._limits(values))
+
+    def _limits(self, values: Mapping[sp.Symbol, mp.mpf]) -> Vector:
+        """Return values that random points nearby have in common, nan if they differ."""
+        random, moved = np.random.default_rng(0), (*self._groups["q"], *self._groups["v"])
+        with mp.workdps(NEARBY_DIGITS):
+            points = [
+                {**values, **{name: values[name] + NEARBY * x for name, x in zip(moved, way, strict=True)}}
+                for way in random.normal(size=(SHAKES, len(moved)))
+            ]
+            near = np.array([self._steps.real_at(each) for each in points], dtype=float)
+        apart = np.ptp(near, axis=0) > 10.0**-DIGITS * np.max(np.abs(near), axis=0) + float(NEARBY) ** 0.5
+        return np.where(apart, np.nan, near[0])
 
     def quickly_at(self, point: Mapping[str, float]) -> dict[str, Matrix]:
         """Evaluate residuals and gradients in double precision.
@@ -220,8 +243,8 @@ class DescribedEquations:
     @property
     def switches(self) -> bool:
         """True if signs change the equations or the laws."""
-        laws = map(exact, self.motion.scene.control_law.values())
-        return any(each.has(*SWITCHING) for each in (*self._smooth, *laws))
+        laws = self.motion.scene.control_law.trees.values()
+        return any(each.has(*SWITCHING) for each in self._smooth) or any(map(_switches, laws))
 
     def _arranged(self, numbers: Sequence[Any]) -> dict[str, Matrix]:
         ends = np.cumsum(list(self._shapes.values()))[:-1]
@@ -234,6 +257,21 @@ class DescribedEquations:
         for name in ("mass", "mass_rate"):
             found[name] = np.pad(found[name].reshape(n, n), (0, more))
         return found
+
+    def prescribed(self, t: float) -> dict[str, float]:
+        """Return the prescribed reactions at a time.
+
+        Parameters
+        ----------
+        t : float
+            Time, in the scene's unit.
+
+        Returns
+        -------
+        dict of str to float
+        """
+        found = self.motion.reactions.at(Taylor(0), mp.mpf(t), self.motion.parameters())
+        return {name: float(row[0]) for name, row in found.items()}
 
     def law(self, t: float) -> dict[str, float]:
         """Return the controls with a law and their derivatives at a time.
@@ -256,6 +294,11 @@ class DescribedEquations:
 
 def _symbols(names: Iterable[str]) -> tuple[sp.Symbol, ...]:
     return tuple(sp.Symbol(name, real=True) for name in names)
+
+
+def _switches(tree: Tree) -> bool:
+    """Return True if a law has signs or parts. Tables are smooth enough."""
+    return isinstance(tree, list) and (tree[0] in PARTED or any(map(_switches, tree[1:])))
 
 
 def _between_switchings(expression: sp.Expr) -> sp.Expr:
@@ -305,6 +348,9 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     Condition
     """
     yield from conditions_on_rates(equations, content)
+    n, s = len(content["coordinates"]), len(content["A"])
+    shapes = {"mass": (n, n), "eigenvalues": (s, 2), "modes": (n, s, 2), "frequencies": (s,), "damping": (s,)}
+    yield from conditions_on_shapes(content, shapes)
     yield from _conditions_on_rest(equations, content)
     N, mass = (
         np.array(content["basis"]).reshape(len(content["coordinates"]), -1),
@@ -313,6 +359,30 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     yield Condition("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
     yield from _conditions_on_modes(content, N, mass)
     yield from _conditions_on_ranks(content)
+
+
+def conditions_on_shapes(content: Mapping[str, Any], shapes: Mapping[str, tuple[int, ...]]) -> Iterator[Condition]:
+    """Yield the conditions on the sizes of lists in a document.
+
+    Parameters
+    ----------
+    content : mapping
+        The document.
+    shapes : mapping of str to tuple of int
+        Shape of each list, by its name, or by two names with a point between them.
+
+    Yields
+    ------
+    Condition
+    """
+    for name, shape in shapes.items():
+        group, _, entry = name.partition(".")
+        part = content[group][entry] if entry else content[group]
+        yield Condition(f"shape of {name}", not _has_shape(part, *shape))
+
+
+def _has_shape(part: Any, length: int, *lengths: int) -> bool:
+    return len(part) == length and all(_has_shape(each, *lengths) for each in part if lengths)
 
 
 def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
@@ -333,15 +403,21 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     reactions, point, outputs = equations.names("lambda"), content["point"], content["outputs"]
     yield Condition("coordinates", content["coordinates"] != q)
     yield Condition("controls", content["controls"] != u)
+    n, m, r, p = len(q), len(content["A"]) // 2, len(u), len(outputs)
+    shapes = {"basis": (n, m), "A": (2 * m, 2 * m), "C": (p, 2 * m)}
+    shapes |= {f"{name}.{rate}": (rows, r) for name, rows in (("B", 2 * m), ("D", p)) for rate in ("u", "du", "ddu")}
+    yield from conditions_on_shapes(content, shapes)
+    if "leading" in content:
+        yield Condition("leading", len(content["leading"]) != m or not set(q).issuperset(content["leading"]))
+        chosen = _matrix(content["basis"], m)[[q.index(name) for name in content["leading"]]]
+        yield Condition("leading", np.linalg.matrix_rank(chosen) < m)
     solved = [name for name in outputs if name in reactions]
     yield Condition("outputs", outputs != [*q, *v, *solved, *equations.outputs])
     yield from _conditions_on_point(equations, content)
     here = equations.at(point)
-    N, mass = np.array(content["basis"]).reshape(len(q), -1), here["mass"]
-    n, m = N.shape
+    N, mass = _matrix(content["basis"], m), here["mass"]
     rates, rows = (np.hstack([_matrix(content[a], 2 * m), *_parts(content, b)]) for a, b in ("AB", "CD"))
     width = rows.shape[1]
-    yield Condition("number of states", rates.shape != (2 * m, width) or len(rows) != len(outputs))
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
     solution[[reactions.index(name) for name in solved]] = rows[2 * n :][: len(solved)]
@@ -376,6 +452,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
         own, size = _deviation(here, "output", known)
         _, rounding = _deviation(_rounding_errors(equations, point, here), "output", known)
         given = rows[2 * n + len(solved) :]
+        rounding = rounding + LARGER * np.finfo(float).eps * np.max(np.abs(rows))
         size = size + np.abs(given) + 10.0**DIGITS * rounding  # terms that cancel leave rounding errors
         yield Condition("outputs of the scene in C and D", own - given, size)
 
@@ -401,9 +478,8 @@ def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, An
             for name, value in scene.initial_state.trees.items():
                 x = float(equations.motion.number_of(value))
                 yield Condition(f"initial value of {name}", point.get(name, x) - x, 1 + abs(x))
-    reactions = equations.motion.reactions.at(Taylor(0), mp.mpf(point["t"]), equations.motion.parameters())
-    for name, row in reactions.items():
-        yield Condition(f"prescribed {name}", point[name] - float(row[0]), 1 + abs(float(row[0])))
+    for name, x in equations.prescribed(point["t"]).items():
+        yield Condition(f"prescribed {name}", point[name] - x, 1 + abs(x))
     here = equations.at(point)
     for row in ("constraint", "rate", "acceleration", "equation"):
         sizes = sum(
@@ -416,13 +492,13 @@ def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, An
 def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) -> Iterator[Condition]:
     A, m = _matrix(content["A"], 2 * N.shape[1]), N.shape[1]
     values, modes = (_complex(content[name]) for name in ("eigenvalues", "modes"))
-    yield Condition("number of eigenvalues", len(values) != 2 * m or modes.shape != (len(N), 2 * m))
     size = np.linalg.norm(A, 2) if m else 1.0
     powers = np.eye(2 * m)
     for k in range(1, 2 * m + 1):
         powers = powers @ (A / (size or 1.0))
         total = np.sum((values / (size or 1.0)) ** k)
         yield Condition(f"sum of the eigenvalues to the power {k}", np.trace(powers) - total, 2 * m)
+    yield from _conditions_on_eigenvalues("", A, values)
     for value, mode in zip(values, modes.T, strict=True):
         xi = N.T @ mass @ mode
         yield Condition("modes are tangent", N @ xi - mode, 1 + np.abs(N) @ np.abs(xi))
@@ -431,7 +507,28 @@ def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) ->
         yield Condition("largest entry of a mode", np.max(np.abs(mode), initial=0.0) - 1 if xi.any() else 0.0)
     yield Condition("frequencies", np.abs(values) / (2 * np.pi) - content["frequencies"], np.abs(values))
     damped = np.where(values, -values.real / np.where(values, np.abs(values), 1), 0)
-    yield Condition("damping", damped - content["damping"])
+    yield Condition(
+        "damping", damped - content["damping"], np.abs(damped) + LARGER * np.finfo(float).eps * 10.0**DIGITS
+    )
+
+
+def _conditions_on_eigenvalues(place: str, A: Matrix, given: Vector, least: float = 0.0) -> Iterator[Condition]:
+    """Compare eigenvalues, to rounding errors of A.
+
+    An eigenvalue moves by its condition times the error of A, but a multiple one by no more than half the digits.
+    """
+    if not A.size:
+        return
+    truth, left, right = scipy.linalg.eig(A, left=True, right=True)
+    with np.errstate(divide="ignore"):
+        conditions = 1 / np.abs(np.einsum("ij,ij->j", left.conj(), right))
+    size = max(np.max(np.abs(truth)), least)
+    missing = list(given)
+    for value, condition in zip(truth, conditions, strict=True):
+        nearest = min(missing, key=lambda z, value=value: abs(z - value))
+        missing.remove(nearest)
+        moved = abs(value) + 10.0**DIGITS * LARGER * np.finfo(float).eps * condition * np.linalg.norm(A, 2)
+        yield Condition(f"{place}eigenvalue", nearest - value, max(min(moved, size * 10.0 ** (DIGITS // 2)), least))
 
 
 def _conditions_on_ranks(content: Mapping[str, Any]) -> Iterator[Condition]:
@@ -441,7 +538,8 @@ def _conditions_on_ranks(content: Mapping[str, Any]) -> Iterator[Condition]:
         ("controllable", A, b_u + A @ (b_du + A @ b_ddu)),
         ("observable", A.T, C.T),
     ):
-        yield Condition(f"{name}_rank", content[f"{name}_rank"] != _reached(matrix, entering))
+        if (rank := content[f"{name}_rank"]) is not None:  # null where rounding leaves it open
+            yield Condition(f"{name}_rank", rank != _reached(matrix, entering))
 
 
 def _reached(A: Matrix, B: Matrix) -> int:
@@ -532,7 +630,8 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
     rates = [name for group in ("du", "ddu") for name in equations.names(group)]
     at_rest = {"t": float(equations.motion.first_time), **dict.fromkeys((*v, *a, *rates), 0.0), **controls}
     yield Condition("controls", list(controls) != equations.names("u"))
-    yield Condition("complete", content["complete"] != (len(found) == content["count"] and all(_of(found, "isolated"))))
+    counted = content["regular"] and len(found) == content["count"] and all(_of(found, "isolated"))
+    yield Condition("complete", content["complete"] != counted)
     yield Condition("names", _of(found, "name") != [f"e{k}" for k in range(1, len(found) + 1)])
     yield from _conditions_on_turns(equations, content, at_rest)
     rational = content["rational"]
@@ -548,10 +647,11 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         signs = equations.orientation({**at_rest, **found[0]["coordinates"]}) if found else [1] * len(roots)
         oriented = [root**2 - sign * g for root, g, sign in zip(roots, equations.orientations, signs, strict=True)]
         conditions, unknowns = [*equations_at_rest, *oriented], [*_symbols(q), *roots]
-        count = count_real_solutions(conditions, [*unknowns, *_symbols(reactions)])
+        reacting = [reactions[beta] for beta in equations.reacting]
+        count = count_real_solutions(conditions, [*unknowns, *_symbols(reacting)])
         if count is None:  # of dependent constraints, some multipliers are chosen as zero
-            used = [name for name in reactions if any(each["multipliers"][name] for each in found)]
-            none = dict.fromkeys(_symbols(name for name in reactions if name not in used), 0)
+            used = [name for name in reacting if any(each["multipliers"][name] for each in found)]
+            none = dict.fromkeys(_symbols(name for name in reacting if name not in used), 0)
             count = count_real_solutions([each.subs(none) for each in conditions], [*unknowns, *_symbols(used)])
         listed = content["count"] << len(content["reversals"]) + len(roots)
         yield Condition("number of solutions", None if count is None else count - listed)
@@ -648,16 +748,12 @@ def _conditions_on_stability(
     M, D, K = (W.T @ here[f"equation_by_{group}"] @ N for group in ("a", "v", "q"))
     m = len(K)
     one, none = np.eye(m), np.zeros((m, m))
-    truth = scipy.linalg.eigvals(np.block([[none, one], [-K, -D]]), scipy.linalg.block_diag(one, M))
-    given = _complex(each["eigenvalues"])
+    A = np.block([[none, one], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+    truth = np.linalg.eigvals(A)
     size = np.max(np.abs(truth), initial=0.0)
-    if not each["isolated"]:
-        size = max(size, 1.0)  # all may be rounding errors
-    left = list(given)
-    for value in truth:  # close ones of a multiple eigenvalue have half the digits
-        nearest = min(left, key=lambda z, value=value: abs(z - value))
-        left.remove(nearest)
-        yield Condition(f"{place}eigenvalue", nearest - value, size * 10.0 ** (DIGITS // 2))
+    least = 0.0 if each["isolated"] else 1.0  # all may be rounding errors
+    yield from _conditions_on_eigenvalues(place, A, _complex(each["eigenvalues"]), least)
+    size = max(size, least)
     stiff, rounding = np.linalg.svd(K, compute_uv=False), _rounding_of_stiffness(equations, here, point, N)
     if each["isolated"]:
         yield Condition(f"{place}isolated", bool(m and stiff[-1] <= max(10.0**-DIGITS * stiff[0], rounding)))

@@ -16,7 +16,7 @@ import scipy.linalg
 from scipy.integrate import solve_ivp
 
 from ..simulation.matrices import Matrix, Vector
-from .linearized import DIGITS, Condition, DescribedEquations, conditions_on_rates
+from .linearized import DIGITS, Condition, DescribedEquations, conditions_on_rates, conditions_on_shapes
 
 TOLERANCE = 1e-11  # of a step of SciPy
 AT_EACH_TIME = "basis", "A", "C"
@@ -50,12 +50,16 @@ def conditions_on_linearized_motion(equations: DescribedEquations, content: Mapp
         here |= {"at": t, "point": point}
         yield from conditions_on_rates(equations, names | here)
     n = len(q)
-    C, transition = np.array(content["C"]), np.array(content["transition"])
+    size = len(content["A"][0])
+    yield from conditions_on_shapes(content, {"transition": (count, size, size)})
+    C = np.array(content["C"]).reshape(count, len(content["outputs"]), size)
+    transition = np.array(content["transition"]).reshape(count, size, size)
     deviations = C @ transition
-    if equations.switches:
-        yield Condition("transition", None)
+    motion = _Motion(equations)
+    if equations.switches or not motion.determines(points[0]):
+        if size:
+            yield Condition("transition", None)
     else:
-        motion = _Motion(equations)
         states = np.array([[point[name] for name in (*q, *v)] for point in points])
         state, moved = states[0], deviations[0][: 2 * n]
         yield Condition("transition at the first time", transition[0] - np.eye(transition.shape[-1]))
@@ -78,6 +82,8 @@ class _Motion:
     def __init__(self, equations: DescribedEquations) -> None:
         self._equations = equations
         self._n = len(equations.names("q"))
+        reactions = len(equations.names("lambda"))
+        self._unknown = [*equations.reacting, *range(len(equations.multipliers), reactions)]
 
     def followed(self, span: tuple[float, float], state: Vector, moved: Matrix) -> tuple[Vector, Matrix]:
         """Return the state and its deviations at the end of a time span."""
@@ -85,13 +91,20 @@ class _Motion:
         end = solve_ivp(self._rates, span, start, "DOP853", rtol=TOLERANCE, atol=TOLERANCE).y[:, -1]
         return end[: len(state)], end[len(state) :].reshape(moved.shape)
 
+    def determines(self, point: Mapping[str, float]) -> bool:
+        """Return True if the constraints with second derivatives fix the motion."""
+        open_directions = scipy.linalg.null_space(self._matrix(self._equations.quickly_at(point)))
+        return bool(np.linalg.norm(open_directions[: self._n]) < 10.0**-DIGITS)
+
     def _rates(self, t: float, values: Vector) -> Vector:
         n, equations = self._n, self._equations
         state, moved = values[: 2 * n], values[2 * n :].reshape(2 * n, -1)
-        unknown = [*equations.names("a"), *equations.names("lambda")]
+        reactions = equations.names("lambda")
+        unknown = [*equations.names("a"), *(reactions[beta] for beta in self._unknown)]
         point = {
             "t": t,
             **equations.law(t),
+            **equations.prescribed(t),
             **dict(zip((*equations.names("q"), *equations.names("v")), state, strict=True)),
         }
         here = equations.quickly_at({**point, **dict.fromkeys(unknown, 0.0)})
@@ -101,13 +114,12 @@ class _Motion:
         missed = (here[f"{row}_by_q"] @ q + here[f"{row}_by_v"] @ v for row in ("equation", "acceleration"))
         return np.concatenate([state[n:], solved[:n], v.ravel(), self._solved(here, *missed)[:n].ravel()])
 
-    @staticmethod
-    def _solved(here: Mapping[str, Matrix], equation: Matrix, acceleration: Matrix) -> Matrix:
-        left = np.block([
-            [here["equation_by_a"], here["equation_by_lambda"]],
-            [here["acceleration_by_a"], here["acceleration_by_lambda"]],
-        ])  # fmt: skip
-        return np.linalg.lstsq(left, -np.vstack([equation, acceleration]), rcond=None)[0]
+    def _solved(self, here: Mapping[str, Matrix], equation: Matrix, acceleration: Matrix) -> Matrix:
+        return np.linalg.lstsq(self._matrix(here), -np.vstack([equation, acceleration]), rcond=None)[0]
+
+    def _matrix(self, here: Mapping[str, Matrix]) -> Matrix:
+        rows = "equation", "acceleration"
+        return np.block([[here[f"{row}_by_a"], here[f"{row}_by_lambda"][:, self._unknown]] for row in rows])
 
 
 def _conditions_on_period(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:

@@ -6,7 +6,7 @@ the corrections of the state, residuals, energy and power are compared with the 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 
@@ -238,6 +238,10 @@ def _plain_states(
         curve = own.curve(state, dict(zip(first.coordinates, x, strict=False)), controls)
         curve |= {name: inputs[name] for name in first.reacting}
         yield from ((MATRICES, value) for value in states.values_of_matrices(motion, system, computed, curve, x))
+        for problem in problems.values():
+            if (problem.matrices, problem.energy) != (first.matrices, first.energy):
+                for both in ((problem.matrices, first.matrices), (problem.energy, first.energy)):
+                    yield from ((MATRICES, value) for value in _values_alike(*both, inputs))
         for solve, problem in problems.items():
             if problem.projection is not None:
                 part = f"motion program, {solve} solve"
@@ -270,6 +274,14 @@ def _plain_states(
     return compared
 
 
+def _values_alike(program: Program, true: Program, inputs: Values) -> Iterator[ComparedValue]:
+    """Compare the outputs of two programs."""
+    found, wanted = run(program, inputs), run(true, inputs)
+    for name in {**true.outputs, **program.outputs}:
+        x, y = ((*each.get(name, ()), mp.inf)[0] for each in (found, wanted))
+        yield ComparedValue(name, x, y, abs(y))
+
+
 def _released_states(
     motion: DescribedMotion, problems: Mapping[Solve, MotionProblem], seed: str
 ) -> Callable[[int], Parts]:
@@ -294,6 +306,11 @@ def _released_states(
             for name in problem.multipliers[len(multipliers) :]:
                 yield part, ComparedValue(name, found[name][0], mp.zero, size)
             curve = own.curve(state, accelerations, controls)
+            x = [*accelerations.values(), *(found[name][0] for name in problem.multipliers)]
+            inputs = own.inputs(state, x[len(accelerations) :])
+            computed = run(problem.matrices, inputs) | run(problem.energy, inputs)
+            system = states.bordered(computed, len(accelerations), problem.multipliers, problem.motion.redundant)
+            yield from ((part, each) for each in states.values_along_motion(motion, system, computed, curve, x))
             holding = [*motion.constraints, *motion.outputs]
             yield from ((part, each) for each in states.values_by_substitution(motion, curve, multipliers, holding))
 

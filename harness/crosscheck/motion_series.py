@@ -19,7 +19,7 @@ from ..formats import Document, read
 from ..number_texts import number, numbers
 from ..program.motion_problem import MotionProblem
 from ..program.request import Solve
-from ..series.power_series import MotionSeries
+from ..series.power_series import MotionSeries, SeriesDocument
 from ..series.request import EXACT
 from .compared_values import differing
 from .described_motion import DescribedMotion, Residual
@@ -35,6 +35,7 @@ from .report import CheckResult, Verdict
 from .taylor import Polynomial, Taylor
 
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
+DIGITS_OF = {"double": 15, "extended": 18, "quadruple": 33}
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
 Complete = Callable[[Values, list[Polynomial]], Values]  # the series with the powers that follow from them
 SERIES, SERVO = "power series", "servo-constraints, along the motion"
@@ -115,7 +116,7 @@ def verify_series(
         else:
             motion = DescribedMotion(description, scenes[each.scene])
             series, digits = each.series, digits_of(each.series.arithmetic, LOST)
-            result = _verify(partial(_compared, motion, series, corrections.get(each.scene)), digits)
+            result = _verify(partial(compared_series, motion, series, corrections.get(each.scene)), digits)
         verdicts.append(ProgramVerdict(each.scene, SERIES, result))
     return verdicts
 
@@ -158,7 +159,7 @@ def digits_of(arithmetic: str, lost: int) -> int:
     Parameters
     ----------
     arithmetic : str
-        ``exact``, or ``bigfloat(N)`` with N digits.
+        As of `SeriesDocument`.
     lost : int
         Digits that a rounded coefficient may lose.
 
@@ -166,7 +167,10 @@ def digits_of(arithmetic: str, lost: int) -> int:
     -------
     int
     """
-    return DIGITS if arithmetic == EXACT else min(DIGITS, int(arithmetic[9:-1]) - lost)
+    if arithmetic == EXACT:
+        return DIGITS
+    stated = arithmetic.partition("(")[2].rstrip(")")
+    return min(DIGITS, (int(stated) if stated else DIGITS_OF[arithmetic]) - lost)
 
 
 def _verify(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> CheckResult:
@@ -178,27 +182,44 @@ def _verify(compared: Callable[[], Iterator[ComparedValue]], digits: int) -> Che
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
 
 
-def _compared(
-    motion: DescribedMotion, series: MotionSeries, correction: tuple[str, str] | None
+def compared_series(
+    motion: DescribedMotion,
+    series: MotionSeries | SeriesDocument,
+    correction: tuple[str, str] | None,
+    order: int = ORDER,
 ) -> Iterator[ComparedValue]:
     """Check that a power series starts at the initial state and is a solution.
 
     Prescribed reactions are among the equations.
+
+    Parameters
+    ----------
+    motion : DescribedMotion
+        The reference.
+    series : MotionSeries or SeriesDocument
+    correction : tuple of str and str or None
+        As for `values_of_start`.
+    order : int
+        Order of the series.
+
+    Yields
+    ------
+    ComparedValue
     """
-    taylor, time = Taylor(ORDER), number(series.t0)
-    curve: Values = motion.all_parameters() | motion.law.at(Taylor(ORDER + 3), time, motion.parameters())
+    taylor, time = Taylor(order), number(series.t0)
+    curve: Values = motion.all_parameters() | motion.law.at(Taylor(order + 3), time, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
     curve["t"] = (time, mp.one)
     multipliers = {name: tuple(numbers(row)) for name, row in series.multipliers.items()}
     for name, prescribed in motion.reactions.at(taylor, time, motion.parameters()).items():
-        for k in range(ORDER + 1):
+        for k in range(order + 1):
             true = _coefficient(prescribed, k)
             yield ComparedValue(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
     yield from _values_of_rows(series.controls, curve, mp.zero)
     yield from values_of_start(motion, _start(series, time), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
-    yield from values_of_series(motion, curve, tuple(series.coordinates), ordered, ORDER)
+    yield from values_of_series(motion, curve, tuple(series.coordinates), ordered, order)
 
 
 def _values_of_forces(

@@ -55,8 +55,8 @@ def values_of_start(
     allowed = mp.mpf(correction[1]) * mp.mpf("1.01") if correction else mp.zero
     for name, tree in motion.scene.initial_state.trees.items():
         given = motion.number_of(tree)
-        if abs(start[name] - given) > allowed:
-            yield ComparedValue(f"initial value of {name}", start[name], given, abs(given))
+        near = abs(start[name] - given) <= allowed
+        yield ComparedValue(f"initial value of {name}", start[name], start[name] if near else given, abs(given))
     # forces may have no value at the initial time
     needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])
     values = motion.values(RATE, _curve(motion, start), needed)

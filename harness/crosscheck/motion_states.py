@@ -336,12 +336,12 @@ def values_of_matrices(
     ComparedValue
         Of energy, power, an equation of motion or a constraint.
     """
+    yield from _values_of_energy_and_residuals(motion, computed, curve)
     values, natural = motion.values(SECOND, curve), len(motion.constraints)
     multipliers = [(each,) for each in x[system.n : system.n + natural]]
     equations = motion.equations(SECOND, values, multipliers)
     energy = (*motion.energy(SECOND, values, curve), mp.zero)
     work = [curve[q][1] * each.value[0] for q, each in zip(motion.system.coordinates, equations, strict=True)]
-    yield ComparedValue("energy", computed["energy"][0], energy[0], abs(energy[0]))
     yield ComparedValue(
         "power", computed["power"][0], energy[1] - mp.fsum(work), abs(energy[1]) + mp.fsum(map(abs, work))
     )
@@ -355,12 +355,46 @@ def values_of_matrices(
         f = (*values[place], mp.zero, mp.zero)
         terms = [entry * x[k] for k, entry in system.rows[system.n + beta].items()]
         right = system.right[system.n + beta]
-        yield ComparedValue(f"constraint {beta + 1}", computed[f"residual[{beta + 1}]"][0], f[0], abs(f[0]))
-        yield ComparedValue(
-            f"derivative of constraint {beta + 1}", computed[f"residual_rate[{beta + 1}]"][0], f[1], abs(f[1])
-        )
         size = mp.fsum(map(abs, terms)) + abs(right)
         yield ComparedValue(f"second time derivative of constraint {beta + 1}", mp.fsum(terms) - right, 2 * f[2], size)
+
+
+def values_along_motion(
+    motion: DescribedMotion, system: Bordered, computed: Values, curve: Values, x: Sequence[mp.mpf]
+) -> Iterator[ComparedValue]:
+    """Check matrices, energy, power and residuals along a motion.
+
+    Parameters
+    ----------
+    motion, system, computed, curve : DescribedMotion, Bordered, Values, Values
+        As for `values_of_matrices`.
+    x : sequence of mpf
+        Accelerations and multipliers of the motion.
+
+    Yields
+    ------
+    ComparedValue
+    """
+    yield from _values_of_energy_and_residuals(motion, computed, curve)
+    rate = (*motion.energy(SECOND, motion.values(SECOND, curve), curve), mp.zero)[1]
+    yield ComparedValue("power", computed["power"][0], rate, abs(rate))
+    for place, (row, right) in enumerate(zip(system.rows, system.right, strict=True), 1):
+        terms = [entry * x[k] for k, entry in row.items()]
+        size = mp.fsum(map(abs, terms)) + abs(right)
+        yield ComparedValue(f"row {place} of the equations", mp.fsum(terms) - right, mp.zero, size)
+
+
+def _values_of_energy_and_residuals(
+    motion: DescribedMotion, computed: Values, curve: Values
+) -> Iterator[ComparedValue]:
+    values = motion.values(SECOND, curve)
+    energy = motion.energy(SECOND, values, curve)[0]
+    yield ComparedValue("energy", computed["energy"][0], energy, abs(energy))
+    for beta, place in enumerate([*motion.constraints, *motion.outputs], 1):
+        f = (*values[place], mp.zero)
+        for k, (name, what) in enumerate((("residual", ""), ("residual_rate", "derivative of "))):
+            if f"{name}[{beta}]" in computed:
+                yield ComparedValue(f"{what}constraint {beta}", computed[f"{name}[{beta}]"][0], f[k], abs(f[k]))
 
 
 def values_of_solve(

@@ -1,7 +1,8 @@
 """Verdicts on JSON documents of stability and series.
 
-Derivatives of power series by p are checked without differentiation: the series q + e dq/dp must satisfy the equations
-for p + e to first order, which a central difference shows.
+A power series must start at the initial state and satisfy the equations of motion. Its derivatives by p are checked
+without differentiation: the series q + e dq/dp must satisfy the equations for p + e to first order, which a central
+difference shows.
 """
 
 from __future__ import annotations
@@ -21,21 +22,24 @@ from ..formats import Publication, require
 from ..number_texts import number, numbers
 from ..program.differentiation import derivative_name
 from ..series.power_series import SeriesDocument
+from ..series.request import EXACT
 from ..stability.along import LinearizedMotion
 from ..stability.equilibria import Equilibria
 from ..stability.linearization import Linearization
+from ..structs import structured
 from .compared_values import differing
 from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .law import Law
 from .linearized import DescribedEquations, conditions_on_equilibria, conditions_on_linearization, verify
 from .linearized_along import conditions_on_linearized_motion
-from .motion_series import digits_of, values_of_series
+from .motion_series import compared_series, digits_of, values_of_series
 from .motion_states import ComparedValue
 from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_on
 from .taylor import Polynomial, Taylor
 
 LOST = 10  # digits that a derivative in rounded numbers may lose
+CORRECTED = mp.mpf("1e-7")  # of the largest initial value, by which given ones may be corrected
 Content = Mapping[str, Any]
 
 
@@ -97,7 +101,7 @@ def _unchecked(kind: Publication, content: Content) -> str:
         case Publication.EQUILIBRIA:
             return "not checked: starts, more, singular"
         case Publication.SERIES:
-            return "not checked: radius"
+            return "not checked: radius, switch"
     return ""
 
 
@@ -113,13 +117,14 @@ def _verify_equilibria(description: Description, content: Content) -> CheckResul
     return verify(conditions_on_equilibria(DescribedEquations(description, content["scene"]), content))
 
 
-def _verify_derivatives(description: Description, content: Content) -> CheckResult:
+def _verify_series(description: Description, content: Content) -> CheckResult:
+    groups = ("coordinates", "multipliers", "constraint_forces", "controls", "sensitivities")
+    texts = {group: {name: tuple(map(str, row)) for name, row in content[group].items()} for group in groups}
+    content = {**content, **texts, "t0": str(content["t0"])}
     scene = next(each for each in description.scenes if each.name == content["scene"])
     digits = digits_of(content["arithmetic"], LOST)
-    if not content["sensitivities"]:
-        return CheckResult(Verdict.NOTHING, None, None, "the series has no derivatives")
     try:
-        wrong = differing(partial(_derivatives, DescribedMotion(description, scene), content), digits)
+        wrong = differing(partial(_values, DescribedMotion(description, scene), content), digits)
     except IrregularPoint:
         return CheckResult(Verdict.UNDECIDED, None, None, "an expression has no initial value")
     return CheckResult(Verdict.DISAGREES if wrong else Verdict.AGREES, digits, 1, wrong)
@@ -129,16 +134,34 @@ VERIFIERS: Mapping[Publication, tuple[type, Callable[[Description, Content], Che
     Publication.LINEARIZED: (Linearization, _verify_linearization),
     Publication.LINEARIZED_ALONG: (LinearizedMotion, _verify_linearized_motion),
     Publication.EQUILIBRIA: (Equilibria, _verify_equilibria),
-    Publication.SERIES: (SeriesDocument, _verify_derivatives),
+    Publication.SERIES: (SeriesDocument, _verify_series),
 }
+
+
+def _values(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue]:
+    """Yield values of the series and, if there are some, of its derivatives."""
+    series, order = structured(SeriesDocument, content), content["order"]
+    rows = (series.coordinates, series.multipliers, series.constraint_forces, series.controls, series.sensitivities)
+    for row in (row for each in rows for row in each.values()):
+        yield ComparedValue("order", mp.mpf(len(row) - 1), mp.mpf(order), mp.zero)
+    if not motion.scene.servo_trees:
+        yield from compared_series(motion, series, _largest_correction(series), order)
+    if content["sensitivities"]:
+        yield from _derivatives(motion, content)
+
+
+def _largest_correction(series: SeriesDocument) -> tuple[str, str] | None:
+    """Return the largest correction of a given value in rounded numbers."""
+    if series.arithmetic == EXACT or not series.multipliers:
+        return None
+    largest = max(abs(x) for row in series.coordinates.values() for x in numbers(row[:2]))
+    return "", str(largest * CORRECTED)
 
 
 def _derivatives(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue]:
     names = (*content["coordinates"], *content["multipliers"], *content["controls"])
     moving = content["sensitivities"]
     directions = {name.partition(", ")[2].rstrip(")") for name in moving}
-    lengths = {len(row) for row in (*moving.values(), *content["coordinates"].values())}
-    yield ComparedValue("order", mp.mpf(max(lengths) - 1), mp.mpf(content["order"]), mp.zero)
     for direction in sorted(directions):
         missing = [name for name in names if derivative_name(name, direction) not in moving]
         yield ComparedValue(f"derivatives by {direction}", mp.mpf(len(missing)), mp.zero, mp.zero)
@@ -184,12 +207,22 @@ def _residuals(motion: DescribedMotion, content: Content, direction: str, step: 
 
     curve = parameters | motion.law.at(Taylor(order + 3), time, parameters) | {"t": (time, mp.one)}
     for name, row in content["controls"].items():
-        changes = [x - true for x, true in zip_longest(moved(name, row), curve[name][: order + 1], fillvalue=mp.zero)]
+        changes = _changes(moved(name, row), curve[name][: order + 1])
         size = mp.fsum(map(abs, curve[name]))
         yield from (ComparedValue(f"power {k} of {name}", x, mp.zero, size) for k, x in enumerate(changes))
+    for name, prescribed in motion.reactions.at(Taylor(order), time, parameters).items():
+        changes = zip_longest(moved(name, content["multipliers"][name]), prescribed, fillvalue=mp.zero)
+        size = mp.fsum(map(abs, prescribed))
+        yield from (
+            ComparedValue(f"power {k} of {name}", x - true, mp.zero, size) for k, (x, true) in enumerate(changes)
+        )
     curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
     multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
     yield from values_of_series(motion, curve, tuple(content["coordinates"]), multipliers, order)
+
+
+def _changes(given: Polynomial, true: Polynomial) -> list[mp.mpf]:
+    return [x - y for x, y in zip_longest(given, true, fillvalue=mp.zero)]
 
 
 def _small() -> mp.mpf:

@@ -137,7 +137,7 @@ class SeriesValues:
     truncation_error: float = entry("Estimated truncation error.")
 
 
-Published = float | str
+Published = float | NumberText
 PublishedSeries = Mapping[str, tuple[Published, ...]]
 
 

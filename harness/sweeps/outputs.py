@@ -205,7 +205,7 @@ def _is_number(value: int | float) -> bool:
 
 
 def _time(written: str, text: str) -> Fraction:
-    if not re.fullmatch(r"-?\d+(\.\d*)?(/\d+)?", written) or not within_reach(written):
+    if not re.fullmatch(r"-?\d+(\.\d*|/\d+)?", written) or not within_reach(written):
         raise _error(text, translatable("it names no time"))
     try:
         return Fraction(written)

@@ -45,6 +45,7 @@ def test_an_expression_has_the_precedence_of_maxima():
         "min(abs(x))",
         "at(x,soon)",
         "at(x,1/0)",
+        "at(x,1.5/2)",
         "(" * 400 + "x" + ")" * 400,
         "1e999",
     ],

@@ -184,6 +184,13 @@ def _(record, draw):
     return changed_node(record, draw, lambda node: isinstance(node, str) and node in rates, lambda node: rates[node])
 
 
+@of_class("coordinate in place of its initial value", algebra=True)
+def _(record, draw):
+    moving = [*record["system"]["coordinates"], *record["system"]["velocities"]]
+    wanted = lambda node: isinstance(node, str) and node.removesuffix("_0") in moving and node not in moving  # noqa: E731
+    return changed_node(record, draw, wanted, lambda node: node.removesuffix("_0"))
+
+
 # ---- branches, domains, narrow ranges ----
 
 
