@@ -70,7 +70,7 @@ def near_file(missing: Path) -> str:
         Empty if no name in its folder is similar.
     """
     try:
-        names = [file.name for file in missing.parent.iterdir()]
+        names = [file.name for file in missing.parent.iterdir() if file.name != missing.name]  # as a link to nothing
     except OSError:
         return ""
     from difflib import get_close_matches

@@ -150,17 +150,18 @@ class Command(click.Command):
         Raises
         ------
         HolonomError
-            An output cannot be written, replaces an unrelated file, or is a scene or another output.
+            An output cannot be written, replaces an unrelated file, or is an input or another output.
         """
         given = [(each.type, ctx.params.get(each.name)) for each in self.params]
         outputs = [(kind, path) for kind, path in given if isinstance(kind, OutputFile) and path is not None]
         scenes = [path for kind, value in given if isinstance(kind, SceneFile) for path in _paths(value)]
+        inputs = [path for kind, value in given if getattr(kind, "exists", False) for path in _paths(value or ())]
         force = ctx.meta[FORCE] = ctx.params.pop("force", False)
         files = [(kind, path) for kind, path in outputs if path != STANDARD_OUTPUT]
         for kind, path in files:
             if not (kind.directory and path.is_dir()):
                 require_writable(path)
-        require_apart(scenes, [path for _, path in outputs])
+        require_apart(scenes, [path for _, path in outputs], inputs)
         for kind, path in () if force else files:
             _require_replaceable(path, kind.json)
         return super().invoke(ctx)
@@ -176,8 +177,8 @@ def is_forced() -> bool:
     return click.get_current_context().meta.get(FORCE, False)
 
 
-def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
-    """Raise if an output is a scene of the command or another output.
+def require_apart(scenes: Iterable[Path], outputs: Iterable[Path], inputs: Iterable[Path] = ()) -> None:
+    """Raise if an output is an input of the command or another output.
 
     Links are followed.
 
@@ -187,13 +188,16 @@ def require_apart(scenes: Iterable[Path], outputs: Iterable[Path]) -> None:
         Scene files that the command reads.
     outputs : iterable of Path
         Files that the command writes.
+    inputs : iterable of Path
+        Other files that it reads.
 
     Raises
     ------
     HolonomError
-        An output is also a scene or another output.
+        An output is also an input or another output.
     """
     taken = [(scene, translatable("the scene itself")) for scene in scenes]
+    taken += [(each, translatable("an input")) for each in inputs]
     for output in outputs:
         for other, what in taken:
             if _same_file(output, other):

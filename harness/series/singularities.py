@@ -381,6 +381,9 @@ def _largest_negative(row: Sequence[Any], turns: Sequence[Any]) -> Any:
 def _arithmetic(functions: Any, number: Callable[[Fraction], Any], erf: Callable[[Any], Any]) -> Arithmetic[Any]:
     """Arithmetic of complex numbers by the functions of a module."""
 
+    def quotient(a: Any, b: Any) -> Any:
+        return a / b if functions is np or b else functions.nan
+
     def power(base: Any, exponent: Any) -> Any:
         return base ** (int(exponent) if exponent.denominator == 1 else number(exponent))
 
@@ -394,7 +397,7 @@ def _arithmetic(functions: Any, number: Callable[[Fraction], Any], erf: Callable
             Operation.ADD: lambda *terms: sum(terms[1:], terms[0]),
             Operation.MULTIPLY: lambda *factors: _product(factors),
             Operation.SUBTRACT: lambda a, b: a - b,
-            Operation.DIVIDE: lambda a, b: a / b,
+            Operation.DIVIDE: quotient,
             Operation.NEGATE: lambda a: -a,
             Operation.POWER: lambda a, b: a**b,
             Operation.ABS: lambda a: a,  # in real roots, here up to a factor of modulus one

@@ -194,6 +194,12 @@ OUTPUTS = [
         prepare=lambda here: os.link(here / "scene.mac", here / "hardlink"),
     ),
     Fault(
+        "the verdicts in a result's place",
+        "check scene.mac --result result.json --json result.json",
+        message_of(ErrorKind.OUTPUT_TAKEN, "result.json"),
+        prepare=lambda here: (here / "result.json").write_text("{}"),
+    ),
+    Fault(
         "two outputs of one name", "derive scene.mac --json out --tex out", message_of(ErrorKind.OUTPUT_TAKEN, "output")
     ),
     Fault(

@@ -250,3 +250,14 @@ def test_a_coarse_estimate_leaves_singularities_open_beyond_its_least_radius(dis
     coarse = dataclasses.replace(POLYNOMIAL, estimate=1.0, uncertainty=0.4)
     assert _leaves_open(coarse, distance) is is_open
     assert not _leaves_open(dataclasses.replace(coarse, uncertainty=0.1), distance)
+
+
+@pytest.mark.parametrize("law", ["exp(t/2)", "1 + t^2", "cos(t)"])
+def test_a_divisor_that_is_one_by_an_identity_has_no_zero(law):
+    """Far from the real axis sin^2 + cos^2 cancels to zero: a division by it ended in an internal error."""
+    scene = holonom.system(f"""
+      system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+        constraints = [y*cos(u) - x*sin(u)])$
+      turned : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 1/2, dot(x) = 1/3])$""")
+    radius = scene.series(order=20).radius
+    assert radius.estimate is None or radius.estimate > 1
