@@ -355,9 +355,11 @@ def _constant(x: Polynomial) -> mp.mpf:
 
 
 def _sign(x: Polynomial) -> int:
-    if not x[0]:
-        raise IrregularPoint
-    return 1 if x[0] > 0 else -1
+    """Return the sign after the time of the expansion."""
+    for coefficient in x:
+        if coefficient:
+            return 1 if coefficient > 0 else -1
+    raise IrregularPoint
 
 
 def _product(taylor: Taylor, factors: Iterable[Polynomial]) -> Polynomial:

@@ -59,7 +59,9 @@ class MotionSeries(Shown):
         "States at the times where the motion was expanded anew; null where no continuation is asked for.", None
     )
     switch: str | None = entry(
-        "A function with whose sign the motion is another than the series; null where there is none.", None
+        "A function with whose sign the motion is another than the series; null where there is none. "
+        "If it is zero at t0, the series is the motion after t0.",
+        None,
     )
     switching_time: NumberText | None = entry(
         "The first time after t0 at which it changes; null where that is not of the time alone.", None
@@ -151,7 +153,8 @@ class SeriesDocument:
     scene: str = entry("Name that the scene is assigned to.")
     title: str = entry("Title of the scene.")
     switch: str | None = entry(
-        "A function with whose sign the motion is another than the series; null where there is none."
+        "A function with whose sign the motion is another than the series; null where there is none. "
+        "If it is zero at t0, the series is the motion after t0."
     )
     order: int = entry("Highest power of t - t0.", minimum=2)
     t0: Published = entry("The initial time.")
