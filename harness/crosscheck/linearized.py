@@ -233,7 +233,8 @@ class DescribedEquations:
         dict of str to ndarray
         """
         names, function = self._function
-        return self._arranged(function(*(point[name] for name in names)))
+        found = function(*(point[name] for name in names))
+        return self._arranged(found) if np.isfinite(found).all() else self.at(point)
 
     @cached_property
     def _function(self) -> tuple[list[str], Callable[..., list[float]]]:

@@ -41,7 +41,7 @@ def conditions_on_linearized_motion(equations: DescribedEquations, content: Mapp
     times, points, count = content["times"], content["points"], len(content["times"])
     lists = [*(content[name] for name in AT_EACH_TIME), points, content["transition"]]
     lists += [each for name in RATES for each in content[name].values()]
-    yield Condition("number of times", any(len(each) != count for each in lists))
+    yield Condition("number of times", not count or any(len(each) != count for each in lists))
     yield Condition("order of the times", any(b <= a for a, b in pairwise(times)))
     names = {name: content[name] for name in ("coordinates", "controls", "outputs")}
     for k, (t, point) in enumerate(zip(times, points, strict=True)):
@@ -93,7 +93,7 @@ class _Motion:
 
     def determines(self, point: Mapping[str, float]) -> bool:
         """Return True if the constraints with second derivatives fix the motion."""
-        open_directions = scipy.linalg.null_space(self._matrix(self._equations.quickly_at(point)))
+        open_directions = scipy.linalg.null_space(self._matrix(self._equations.at(point)))
         return bool(np.linalg.norm(open_directions[: self._n]) < 10.0**-DIGITS)
 
     def _rates(self, t: float, values: Vector) -> Vector:

@@ -99,7 +99,7 @@ def _unchecked(kind: Publication, content: Content) -> str:
         case Publication.LINEARIZED_ALONG:
             return "not checked: error" + (", stability of free deviations" if content["free"] else "")
         case Publication.EQUILIBRIA:
-            return "not checked: starts, more, singular"
+            return "not checked: starts, more, singular, regular"
         case Publication.SERIES:
             return "not checked: radius, switch"
     return ""
@@ -122,6 +122,8 @@ def _verify_series(description: Description, content: Content) -> CheckResult:
     texts = {group: {name: tuple(map(str, row)) for name, row in content[group].items()} for group in groups}
     content = {**content, **texts, "t0": str(content["t0"])}
     scene = next(each for each in description.scenes if each.name == content["scene"])
+    if scene.servo_trees:
+        return CheckResult(Verdict.NOTHING, None, None, "the forces that servo-constraints find are not in the series")
     digits = digits_of(content["arithmetic"], LOST)
     try:
         wrong = differing(partial(_values, DescribedMotion(description, scene), content), digits)
@@ -144,8 +146,7 @@ def _values(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue
     rows = (series.coordinates, series.multipliers, series.constraint_forces, series.controls, series.sensitivities)
     for row in (row for each in rows for row in each.values()):
         yield ComparedValue("order", mp.mpf(len(row) - 1), mp.mpf(order), mp.zero)
-    if not motion.scene.servo_trees:
-        yield from compared_series(motion, series, _largest_correction(series), order)
+    yield from compared_series(motion, series, _largest_correction(series), order)
     if content["sensitivities"]:
         yield from _derivatives(motion, content)
 
@@ -211,11 +212,9 @@ def _residuals(motion: DescribedMotion, content: Content, direction: str, step: 
         size = mp.fsum(map(abs, curve[name]))
         yield from (ComparedValue(f"power {k} of {name}", x, mp.zero, size) for k, x in enumerate(changes))
     for name, prescribed in motion.reactions.at(Taylor(order), time, parameters).items():
-        changes = zip_longest(moved(name, content["multipliers"][name]), prescribed, fillvalue=mp.zero)
+        changes = _changes(moved(name, content["multipliers"][name]), prescribed)
         size = mp.fsum(map(abs, prescribed))
-        yield from (
-            ComparedValue(f"power {k} of {name}", x - true, mp.zero, size) for k, (x, true) in enumerate(changes)
-        )
+        yield from (ComparedValue(f"power {k} of {name}", x, mp.zero, size) for k, x in enumerate(changes))
     curve |= {name: moved(name, row) for name, row in content["coordinates"].items()}
     multipliers = [moved(name, content["multipliers"][name]) for name in motion.system.multipliers]
     yield from values_of_series(motion, curve, tuple(content["coordinates"]), multipliers, order)

@@ -51,6 +51,6 @@ def test_results_of_an_example_agree(name):
                 continue
             raise
         verdict = verify_result(found.description, content)
-        assert verdict.verdict is Verdict.AGREES, (kind, verdict.detail)
-        made += 1
+        assert verdict.verdict in (Verdict.AGREES, Verdict.NOTHING), (kind, verdict.detail)
+        made += verdict.verdict is Verdict.AGREES
     assert made
