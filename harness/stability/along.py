@@ -227,7 +227,7 @@ def linearize_along(problem: MotionProblem, equations: LinearEquations, request:
     """
     require_analytic(replace(problem, tables=(), signs=()))
     intervals = request.samples - 1
-    if problem.signs:
+    if problem.signs or (problem.tables and not problem.servo.constraints):
         return _through_switchings(problem, equations, request)
     for blocks in BLOCKS:
         nodes = _Nodes(problem, equations, request, NODES * intervals * -(-blocks // intervals))
@@ -285,7 +285,7 @@ class _Node(NamedTuple):
 
 
 def _through_switchings(problem: MotionProblem, equations: LinearEquations, request: AlongRequest) -> LinearizedMotion:
-    """Linearise along a motion with signs, by its derivatives by initial values."""
+    """Linearise along a motion with signs or tables, by its sensitivities."""
     if problem.servo.constraints:
         raise HolonomError(ErrorKind.NO_LAW, problem.scene)
     nodes = _SwitchedNodes(problem, equations, request)

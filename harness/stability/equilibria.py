@@ -210,7 +210,8 @@ def find_equilibria(
         The equations contain the time, a control has no value, forces jump with the sign of a velocity, or an
         orientation is zero at a place where the constraints hold.
     """
-    require_analytic(replace(problem, signs=tuple(sign for sign in problem.signs if sign.by is DependsOn.REACTION)))
+    reacting = tuple(sign for sign in problem.signs if sign.by is DependsOn.REACTION)
+    require_analytic(replace(problem, signs=reacting, tables=()))
     require_laws(problem)
     if equations.changes_with_time:
         raise HolonomError(ErrorKind.NEVER_AT_REST)

@@ -63,7 +63,10 @@ LEDGER = """
                           (or (null value) (not (maxima-name-p name)) (equal (car value) (symbol-value name))))
               collect (print-invert-case name))))
 """
-DELIBERATELY = {"$diff"}  # notes what a scene differentiates by t (partial_rates.lisp)
+DELIBERATELY = {
+    "$diff",  # notes what a scene differentiates by t (partial_rates.lisp)
+    "make-number",  # remembers what decimals are read from (numbers.lisp)
+}
 ON_GCL = {"print-invert-case"}  # the same text, sooner; and of names beyond ASCII, which GCL 2.7.1 misprints
 
 

@@ -400,3 +400,17 @@ def test_a_motion_that_servo_constraints_fix_has_no_deviations():
     given = "servo_constraints = [x - sin(t)], initial_state = [], time_span = [0, 1]"
     scene = holonom.system(f"{system} s : holonomic_scene(system, {given})$")
     assert scene.linearize_along(samples=3).transition.shape == (3, 0, 0)
+
+
+@pytest.mark.parametrize("k", [10, 400])
+def test_a_table_whose_points_are_between_the_nodes(k):
+    """z'' = -k (z - h(t)): the deviations do not contain h, and were refused as too fast."""
+    found = holonom.system(f"""
+      system : holonomic_system(coordinates = [z], controls = [h], kinetic_energy = dot(z)^2/2,
+        potential_energy = {k}*(z - h)^2/2)$
+      run : holonomic_scene(system, control_law = [h = table([[0, 0], [1/10, 1/20], [1/5, 0], [1, 0]])],
+        initial_state = [z = 0, dot(z) = 0], time_span = [0, 1])$""").linearize_along(samples=3)
+    w = np.sqrt(k)
+    for t, transition in zip(found.times, found.transition, strict=True):
+        true = [[np.cos(w * t), np.sin(w * t) / w], [-w * np.sin(w * t), np.cos(w * t)]]
+        assert transition == pytest.approx(np.array(true), rel=1e-9, abs=1e-9)

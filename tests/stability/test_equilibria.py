@@ -83,6 +83,34 @@ def test_equilibria_by_relative_angles_are_counted():
     assert (found.count, len(found), found.complete, found.turns) == (changes, changes, True, ("a", "b"))
 
 
+def test_a_measured_angle_is_not_off_by_a_half_turn():
+    """n . (cos(phi) b - sin(phi) n') = 0 holds at phi + pi, too: a place was listed that no motion reaches."""
+    found = holonom.system("""
+      body : rigid_body(1, [1, 1, 2], [x, y, z], [e0, e1, e2, e3])$
+      system : holonomic_system(assembly(body,
+        revolute_joint(marker(body, [0, 0, 0], [0, 0, 1]), marker(ground, [0, 0, 0], [0, 0, 1])),
+        prescribed_angle(marker(body, [0, 0, 0], [0, 0, 1], [1, 0, 0]),
+          marker(ground, [0, 0, 0], [0, 0, 1], [1, 0, 0]), phi), torsional_spring(10, 1/2, phi, 0)))$
+      s : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0, phi = 0,
+        dot(phi) = 0, dot(e0) = 0], time_span = [0, 1])$""").equilibria(starts=50)
+    [rest] = found
+    assert 2 * np.arctan2(rest.coordinates["e3"], rest.coordinates["e0"]) % (2 * np.pi) == pytest.approx(0.5)
+
+
+def test_a_table_gives_the_control_that_stays():
+    start = START.format(start="x = 2").replace("time", "initial_guess = [y = 0, dot(x) = 7, dot(y) = 0], time", 1)
+    found = holonom.system(
+        """system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [x^2 + y^2 - u^2])$
+s : holonomic_scene(system, control_law = [u = table([[0, 2], [1, 3], [2, 1]])], """
+        + start
+    ).equilibria(starts=20)
+    assert [(each.coordinates["y"], each.stability) for each in found] == [
+        (pytest.approx(-2.0), Stability.STABLE),
+        (pytest.approx(2.0), Stability.UNSTABLE),
+    ]
+
+
 def test_an_equilibrium_is_linearised_by_its_name():
     scene = holonom.system(DOUBLE_PENDULUM)
     name = next(each.name for each in scene.equilibria() if each.stability is Stability.STABLE)
