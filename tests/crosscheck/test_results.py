@@ -56,7 +56,7 @@ rest : holonomic_scene(system, initial_state = [x = 0, y = 0, dot(x) = 0, dot(y)
 PRESCRIBED = """system : holonomic_system(coordinates = [r, phi], controls = [u], parameters = [S],
   kinetic_energy = (dot(r)^2 + r^2*dot(phi)^2)/2, potential_energy = -10*r*cos(phi), constraints = [r - u])$
 pulled : holonomic_scene(system, prescribed_reactions = [lambda1 = -S - t], parameter_values = [S = 15],
-  initial_state = [r = 1, dot(r) = 0, phi = 1/2, dot(phi) = 0, u = 1, dot(u) = 0], time_span = [0, 1])$"""
+  initial_state = [r = 1, dot(r) = 0, phi = 1/2, dot(phi) = 0, u = 1, dot(u) = 0], time_span = [0, 1/8])$"""
 
 
 def along(scene):
