@@ -147,7 +147,9 @@ class LinearizedMotion(Documented, Shown):
     )
     error: float = entry("Estimated relative error of Phi at the last time, an upper bound in most cases.", minimum=0)
     floquet: Floquet | None = entry("Null unless the state returns and the equations are known to repeat for ever.")
-    free: FreeDeviations | None = entry("Null if the motion is not free, has no constraints, or switches.")
+    free: FreeDeviations | None = entry(
+        "Null if the motion is not free, has no constraints, switches, or follows a table."
+    )
 
     _coordinates = _shared("coordinates", "The n coordinates.")
     _controls = _shared("controls", "The r controls, whose deviations are inputs.")
