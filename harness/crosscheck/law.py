@@ -162,16 +162,18 @@ def _with_names(tree: Tree) -> Tree:
 SWITCHING = ("Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
 
 
-def is_switched(tree: Tree) -> bool:
+def is_switched(tree: Tree, heads: Sequence[str] = SWITCHING) -> bool:
     """Return True if there is a switch or a table in a law.
 
     Parameters
     ----------
     tree : Tree
         Expression of a law.
+    heads : sequence of str
+        Operations that are looked for.
 
     Returns
     -------
     bool
     """
-    return isinstance(tree, list) and (tree[0] in SWITCHING or any(map(is_switched, tree[1:])))
+    return isinstance(tree, list) and (tree[0] in heads or any(is_switched(each, heads) for each in tree[1:]))

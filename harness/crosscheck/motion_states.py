@@ -20,7 +20,7 @@ from .described_motion import DescribedMotion
 from .irregular_point import IrregularPoint
 from .program_values import Values, run, symbols_of_tables, with_signs
 from .ranks import solved
-from .taylor import Taylor
+from .taylor import Polynomial, Taylor
 
 STATE, SECOND = Taylor(0), Taylor(2)
 INDEXED = re.compile(r"(\w+)\[(\d+)(?:,(\d+))?\]")
@@ -336,11 +336,11 @@ def values_of_matrices(
     ComparedValue
         Of energy, power, an equation of motion or a constraint.
     """
-    yield from _values_of_energy_and_residuals(motion, computed, curve)
     values, natural = motion.values(SECOND, curve), len(motion.constraints)
     multipliers = [(each,) for each in x[system.n : system.n + natural]]
     equations = motion.equations(SECOND, values, multipliers)
     energy = (*motion.energy(SECOND, values, curve), mp.zero)
+    yield from _values_of_energy_and_residuals(motion, computed, values, energy)
     work = [curve[q][1] * each.value[0] for q, each in zip(motion.system.coordinates, equations, strict=True)]
     yield ComparedValue(
         "power", computed["power"][0], energy[1] - mp.fsum(work), abs(energy[1]) + mp.fsum(map(abs, work))
@@ -375,9 +375,10 @@ def values_along_motion(
     ------
     ComparedValue
     """
-    yield from _values_of_energy_and_residuals(motion, computed, curve)
-    rate = (*motion.energy(SECOND, motion.values(SECOND, curve), curve), mp.zero)[1]
-    yield ComparedValue("power", computed["power"][0], rate, abs(rate))
+    values = motion.values(SECOND, curve)
+    energy = (*motion.energy(SECOND, values, curve), mp.zero)
+    yield from _values_of_energy_and_residuals(motion, computed, values, energy)
+    yield ComparedValue("power", computed["power"][0], energy[1], abs(energy[1]))
     for place, (row, right) in enumerate(zip(system.rows, system.right, strict=True), 1):
         terms = [entry * x[k] for k, entry in row.items()]
         size = mp.fsum(map(abs, terms)) + abs(right)
@@ -385,11 +386,9 @@ def values_along_motion(
 
 
 def _values_of_energy_and_residuals(
-    motion: DescribedMotion, computed: Values, curve: Values
+    motion: DescribedMotion, computed: Values, values: Sequence[Polynomial], energy: Polynomial
 ) -> Iterator[ComparedValue]:
-    values = motion.values(SECOND, curve)
-    energy = motion.energy(SECOND, values, curve)[0]
-    yield ComparedValue("energy", computed["energy"][0], energy, abs(energy))
+    yield ComparedValue("energy", computed["energy"][0], energy[0], abs(energy[0]))
     for beta, place in enumerate([*motion.constraints, *motion.outputs], 1):
         f = (*values[place], mp.zero)
         for k, (name, what) in enumerate((("residual", ""), ("residual_rate", "derivative of "))):
