@@ -1,12 +1,14 @@
 """The list of tests that take more than a second names tests that exist."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 MEASURED = Path(__file__).with_name("measured.txt").read_text(encoding="utf-8").splitlines()
 
 
+@cache
 def functions(path):
     """Return the names of a file's test functions, with their classes, as pytest joins them."""
     body = ast.parse((ROOT / path).read_text(encoding="utf-8")).body
