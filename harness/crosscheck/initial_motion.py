@@ -32,7 +32,10 @@ STATED_DIGITS = 2
 LIMITED_DIGITS = mp.mpf("2e-9")
 """Largest correction of given values, as a share of the largest of them."""
 
-FEWEST_ROUNDED_DIGITS = 40
+SAME = mp.mpf("1e-9")
+"""Relative difference of two corrections of which either is the largest."""
+
+FEWEST_ROUNDED_DIGITS = 25
 """Digits of the denominator of a number that may be rounded."""
 
 MANY_TOGETHER = 4
@@ -220,16 +223,16 @@ def _require_given(checked: CheckedScene, derived: Definitions) -> None:
     for name, value in checked.given_values.items():
         change = (derived[name] - value).xreplace(checked.parameters)
         if change != 0 and (not change.is_number or not change.equals(0)):
-            changes[name] = change
+            changes[name.name] = _size(change)
     stated = checked.scene.correction
     if not changes and stated is None:
         return
-    largest = max(changes, key=lambda name: _size(changes[name]), default=None)
-    if largest is None or stated is None or stated[0] != largest.name:
+    largest = max(changes, key=changes.get, default=None)
+    if largest is None or stated is None or changes.get(stated[0], 0) < changes[largest] * (1 - SAME):
         raise NotComparable(
             translatable("an initial value of %(name)s that is another than the one given"), name=largest or stated[0]
         )
-    _require_correction(checked, _size(changes[largest]), stated[1])
+    _require_correction(checked, changes[largest], stated[1])
 
 
 def _require_correction(checked: CheckedScene, change: mp.mpf, stated: str) -> None:

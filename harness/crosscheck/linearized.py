@@ -431,7 +431,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     forces = np.vstack([here["equation_by_a"], here["acceleration_by_a"]])
     others = [_deviation(here, row, known) for row in ("equation", "acceleration")]
     missed, size = (np.vstack(each) for each in zip(*others, strict=True))
-    accelerations = _least(forces, -missed)
+    accelerations = _least(forces, -missed, size)
     size = size + _product_sizes(forces, accelerations)
     yield Condition("equations of motion of deviations", forces @ accelerations + missed, size)
     mass_rate = here["mass_rate"]
@@ -594,9 +594,14 @@ def _product_sizes(a: Matrix, b: Matrix) -> Matrix:
     return a @ b + ROUNDED * a.sum(axis=1)[:, None] * b.max(initial=0.0)
 
 
-def _least(matrix: Matrix, right: Matrix) -> Matrix:
-    rows = np.linalg.norm(matrix, axis=1, keepdims=True)
-    rows = np.where(rows, rows, 1.0)
+def _least(matrix: Matrix, right: Matrix, sizes: Matrix | float = 0.0) -> Matrix:
+    """Solve by least squares, each row relative to the sizes of its terms."""
+    found = _of_least_squares(matrix, right, np.linalg.norm(matrix, axis=1))
+    return _of_least_squares(matrix, right, np.max(_product_sizes(matrix, found) + sizes, axis=1, initial=0.0))
+
+
+def _of_least_squares(matrix: Matrix, right: Matrix, sizes: Vector) -> Matrix:
+    rows = np.where(sizes, sizes, 1.0)[:, None]
     return np.linalg.lstsq(matrix / rows, right / rows, rcond=None)[0]
 
 

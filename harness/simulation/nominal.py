@@ -35,6 +35,7 @@ AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
+LIGHT = 1e-6  # of the largest coordinate in the mass metric: less may be rounding of a mass, as of e0 at a half turn
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
 Vector = NDArray[np.float64]
@@ -303,7 +304,8 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
     own = np.maximum(q, v * time)
     felt = (roots * own >= NEAR_ZERO * size) | (own >= NEAR_ZERO * np.max(own, axis=0, initial=0.0))
     felt &= own > 0
-    least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
+    moved = felt & (roots * own >= LIGHT * size)
+    least = np.min(np.where(moved, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
     return _with_given(problem, np.where((size > 0) & (size < np.inf), found, 1.0), time)
 

@@ -340,7 +340,7 @@ class _Search:
         """
         if self._problem.obstruction is None:
             return len(self._independent)
-        return Tangent(self._start["equation_by_a"], self._start["constraint_by_q"]).rank
+        return self._tangent(self._start).rank
 
     def equivalence(self, random: np.random.Generator) -> Equivalence:
         """Return the changes of coordinates that leave a state as it is."""
@@ -560,7 +560,7 @@ class _Search:
         if not all(np.isfinite(each).all() for name, each in here.items() if not name.startswith("output")):
             return None
         try:
-            tangent = Tangent(here["equation_by_a"], here["constraint_by_q"])
+            tangent = self._tangent(here)
         except HolonomError:
             return None
         gradients = np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
@@ -572,6 +572,9 @@ class _Search:
         bound = np.linalg.norm(terms, 2) if terms.size else 0.0
         stiffness = tangent.basis.T @ changes @ tangent.basis
         return stiffness, float(bound), self._error(q, multipliers, tangent, stiffness)
+
+    def _tangent(self, here: Mapping[str, Matrix]) -> Tangent:
+        return Tangent(here["equation_by_a"], here["constraint_by_q"], self._nominal.coordinates)
 
     def _with_limits_at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
         point, equations = self._point(q, multipliers), self._equations
@@ -632,7 +635,7 @@ class _Search:
         J, unbalanced = here["constraint_by_q"], here["equation"]
         try:
             multipliers[self._independent] += np.linalg.lstsq((J * self._sizes).T, self._sizes * unbalanced)[0]
-            basis = Tangent(here["equation_by_a"], J).next_to(tangent.basis).basis
+            basis = self._tangent(here).next_to(tangent.basis).basis
             return basis.T @ self._at(q, multipliers)["equation_by_q"] @ basis
         except (HolonomError, ValueError):  # of matrices that are singular, or no numbers
             return np.full([tangent.basis.shape[1]] * 2, np.inf)
@@ -644,7 +647,7 @@ class _Search:
         zero they are much smaller than at a distance.
         """
         here = self._at(found.q, found.multipliers)
-        basis = Tangent(here["equation_by_a"], here["constraint_by_q"]).basis
+        basis = self._tangent(here).basis
         rows, values, columns = np.linalg.svd(found.stiffness)
         flat = values <= found.least
         directions, pushed = basis @ columns.T[:, flat], basis @ rows[:, flat]

@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 
-from ..simulation.constraints.directions import or_one, weighted_constraints
+from ..simulation.constraints.directions import cholesky, not_positive_definite, or_one
 from ..simulation.matrices import Matrix, Vector
 
 DEPENDENT = 1e-9  # singular values of the scaled constraints, relative to the largest, that count as zero
+LIGHT = 1e-5  # roots of masses in a singular A, in nominal sizes and by the largest, that may be rounding
 
 
 class Tangent:
@@ -28,6 +29,8 @@ class Tangent:
         A, which may be singular if the constraints make the system regular.
     jacobian : ndarray, shape (g, n)
         J, whose rows may depend on one another.
+    sizes : ndarray, shape (n,)
+        Nominal sizes of the coordinates.
     reactions : ndarray, shape (n, f), or None
         Directions of the forces that satisfy the constraints, if they are other than J^T: those of controls.
 
@@ -49,22 +52,23 @@ class Tangent:
 
     Examples
     --------
-    >>> tangent = Tangent(np.diag([4.0, 1.0]), np.array([[0.0, 1.0]]))
+    >>> tangent = Tangent(np.diag([4.0, 1.0]), np.array([[0.0, 1.0]]), np.ones(2))
     >>> tangent.basis.tolist(), tangent.leading
     ([[0.5], [0.0]], (0,))
     """
 
-    def __init__(self, mass: Matrix, jacobian: Matrix, reactions: Matrix | None = None) -> None:
+    def __init__(self, mass: Matrix, jacobian: Matrix, sizes: Vector, reactions: Matrix | None = None) -> None:
         self._mass, self._jacobian, self._reactions = mass, jacobian, reactions
-        weighted = weighted_constraints(mass, jacobian)
-        left, values, _ = np.linalg.svd(weighted.directions)
+        self._roots = _roots(mass, sizes)
+        self._lengths = or_one(np.linalg.norm(jacobian / self._roots, axis=1))
+        _, values, directions = np.linalg.svd(self._directions)
         self.rank = int(np.count_nonzero(values > DEPENDENT * values.max(initial=0.0)))
         self.least = float(values[self.rank - 1] / values[0]) if self.rank else 1.0
-        free = scipy.linalg.solve_triangular(weighted.factor, left[:, self.rank :], lower=True, trans="T")
-        roots = np.sqrt(or_one(np.abs(mass.diagonal())))[:, None]
-        _, _, order = scipy.linalg.qr((roots * free).T, mode="economic", pivoting=True)
+        free = _orthonormal(directions[self.rank :].T / self._roots[:, None], mass)
+        moved = self._roots[:, None] * free
+        _, _, order = scipy.linalg.qr(moved.T, mode="economic", pivoting=True)
         self.leading = tuple(sorted(map(int, order[: free.shape[1]])))
-        left, _, right = np.linalg.svd((roots * free)[list(self.leading)])
+        left, _, right = np.linalg.svd(moved[list(self.leading)])
         self.basis = free @ (left @ right).T
 
     def next_to(self, basis: Matrix) -> "Tangent":
@@ -138,7 +142,7 @@ class Tangent:
     @cached_property
     def _scaled(self) -> tuple[Matrix, Vector, Vector]:
         """Return [A N, -R] in scaled units, with the factors of rows and columns."""
-        rows = 1 / np.sqrt(or_one(np.abs(self._mass.diagonal())))
+        rows = 1 / self._roots
         matrix = rows[:, None] * np.hstack([self._mass @ self.basis, -self._reactions])
         columns: Vector = or_one(np.linalg.norm(matrix, axis=0))
         return matrix / columns, rows, columns
@@ -163,6 +167,29 @@ class Tangent:
     @cached_property
     def _inverse(self) -> Matrix:
         """Return the inverse of J, with lengths in units of the roots of the masses."""
-        roots = np.sqrt(or_one(np.abs(self._mass.diagonal())))
-        lengths: Vector = or_one(np.linalg.norm(self._jacobian / roots, axis=1))
-        return np.linalg.pinv(self._jacobian / roots / lengths[:, None], rcond=DEPENDENT) / roots[:, None] / lengths
+        return np.linalg.pinv(self._directions, rcond=DEPENDENT) / self._roots[:, None] / self._lengths
+
+    @property
+    def _directions(self) -> Matrix:
+        return self._jacobian / self._roots / self._lengths[:, None]
+
+
+def _roots(mass: Matrix, sizes: Vector) -> Vector:
+    """Return the roots of the masses, those that may be rounding replaced.
+
+    In a singular A a small mass may be rounding, and no length to scale by. The nominal size of the coordinate makes
+    one, of the largest energy.
+    """
+    roots = np.sqrt(np.abs(mass.diagonal()))
+    largest = np.max(roots * sizes, initial=0.0)
+    if cholesky(mass) is None:
+        roots = np.where(roots * sizes < LIGHT * largest, largest / sizes, roots)
+    return or_one(roots)
+
+
+def _orthonormal(basis: Matrix, mass: Matrix) -> Matrix:
+    """Return a basis of the same space, orthonormal in the mass metric."""
+    factors = cholesky(basis.T @ mass @ basis)
+    if factors is None:
+        raise not_positive_definite(mass)
+    return basis @ factors[1].T

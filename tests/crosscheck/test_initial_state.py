@@ -207,6 +207,27 @@ def test_another_correction_of_rounded_values_is_found(tmp_path):
         assert verdicts(record, description, changed)["12"] is Verdict.DISAGREES, other
 
 
+NEAR = """load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, constraints = [x^2 + y^2 - 1])$
+scene : holonomic_scene(system, initial_state = [x = {x}, y = {y}, dot(x) = 0, dot(y) = 0])$
+"""
+
+
+@pytest.mark.parametrize(("x", "y"), [("0.707106781187", "-0.707106781187"), ("6.1e-17", "-1"), ("1.0e-13", "-1")])
+def test_equal_and_short_corrections_disagreed(x, y, write_scene):
+    """Of x and y by the same number, or of y to a fraction of 28 digits."""
+    scene = write_scene(NEAR.format(x=x, y=y))
+    checked = check_record(derived_record(scene), describe(scene))
+    assert not checked.disagreements
+    assert {each.verdict for each in checked.verdicts if each.number == "12"} == {Verdict.AGREES}
+
+
+def test_orientations_were_a_disagreement(write_scene):
+    scene = write_scene(NEAR.replace("y^2 - 1]", "y^2 - 1, y - 3/5], orientations = [x]").format(x="4/5", y="3/5"))
+    assert not check_record(derived_record(scene), describe(scene)).disagreements
+
+
 def test_the_rounding_error_of_a_constraint_is_no_disagreement(write_scene):
     """Of two circles' common point, irrational in both coordinates: the constraint is 2.6e-211 in 210 digits."""
     scene = write_scene("""load("holonom.mac")$

@@ -275,9 +275,9 @@ driven : holonomic_scene(system, control_law = [u = t^2], initial_state = [], ti
 """
 
 
-def linearized_later(text: str) -> tuple[holonom.Scene, dict]:
+def linearized_later(text: str, at: str = "1/2") -> tuple[holonom.Scene, dict]:
     scene = holonom.system(text)
-    return scene, json.loads(json.dumps(published(Publication.LINEARIZED, scene.linearize(at="1/2").document())))
+    return scene, json.loads(json.dumps(published(Publication.LINEARIZED, scene.linearize(at=at).document())))
 
 
 def test_an_output_whose_terms_cancel_disagreed():
@@ -300,6 +300,21 @@ def test_a_system_without_a_degree_of_freedom_ended_in_an_internal_error():
     assert (content["A"], content["eigenvalues"]) == ([], [])
     assert verify_result(scene.description, content).verdict is Verdict.AGREES
     content["D"]["u"][0][0] += 1e-3
+    assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
+
+
+HALF_TURN = """rod : rigid_body(2, [1/3, 1, 2], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(assembly(rod, uniform_gravity(10, rod),
+  revolute_joint(marker(rod, [0, 0, 1/2], [1, 0, 0]), marker(ground, [0, 0, 0], [1, 0, 0]))))$
+scene : holonomic_scene(system, time_span = [0, 1], initial_guess = [x = 0, y = 0, z = 1/2, e1 = 1],
+  initial_state = [e0 = 1/10^13, e2 = 0, e3 = 0, dot(e0) = 0])$
+"""
+
+
+def test_a_body_near_a_half_turn_disagreed():
+    scene, content = linearized_later(HALF_TURN, at="0")
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    content["A"][1][0] += 1e-4
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 

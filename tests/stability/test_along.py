@@ -302,6 +302,20 @@ def test_sticking_forgets_the_velocity_and_has_no_linear_system():
     assert refused.value.kind is ErrorKind.NOT_ANALYTIC
 
 
+TURNING = """wheel : rigid_body(1, [1, 1, 2], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(assembly(wheel, revolute_joint(marker(wheel, [0, 0, 0], [0, 0, 1]),
+  marker(ground, [0, 0, 0], [0, 0, 1]))))$
+s : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0, dot(e3) = 1/2],
+  time_span = [0, 2*%pi])$"""
+
+
+def test_a_body_turns_half_round():
+    """In Euler parameters, over samples at the half turn. Of [[1, t], [0, 1]] the norm is known."""
+    along = holonom.system(TURNING).linearize_along(samples=5)
+    t = along.times
+    assert np.linalg.norm(along.transition, 2, axis=(1, 2)) == pytest.approx((t + np.sqrt(t**2 + 4)) / 2)
+
+
 MEISSNER = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
   forces = [spring = [-({a} + {b}*signum(sin(%pi*t + 1)))*x]])$
 s : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], nominal = [x = 1], time_span = [0, 2])$"""

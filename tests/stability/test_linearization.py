@@ -502,3 +502,19 @@ def test_a_driven_linkage_has_no_table_of_modes(holonom_here, tmp_path):
     )
     shown = holonom_here("linearize", tmp_path / "crank.mac")
     assert (shown.returncode, len(shown.stdout.splitlines())) == (0, 2)
+
+
+INVERTED = """rod : rigid_body(2, [1/3, 1, 2], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(parameters = [e], assembly(rod, uniform_gravity(10, rod),
+  revolute_joint(marker(rod, [0, 0, 1/2], [1, 0, 0]), marker(ground, [0, 0, 0], [1, 0, 0]))))$
+scene : holonomic_scene(system, time_span = [0, 1], initial_guess = [x = 0, y = 0, z = 1/2, e1 = 1],
+  initial_state = [e0 = e, e2 = 0, e3 = 0, dot(e0) = 0])$
+"""
+
+
+@pytest.mark.parametrize("e", ["0", "6.1e-17", "1e-13", "1e-8"])
+def test_a_half_turn_by_rounding_was_a_singular_configuration(e):
+    """About it the mass of e1 is rounding: 4 J e0^2."""
+    linear = holonom.system(INVERTED).with_settings(e=e).linearize()
+    assert sorted(linear.eigenvalues.real) == pytest.approx([-(12**0.5), 12**0.5])  # m g l/(J + m l^2)
+    assert linear.basis[1:4, 0] == pytest.approx([0.3**0.5, 0, 0.3**0.5], abs=1e-7)

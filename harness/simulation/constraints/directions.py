@@ -66,14 +66,12 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
     """
     peaks = or_one(np.max(np.abs(jacobian), axis=-1, initial=0.0))
     rows = jacobian / peaks[..., None]
-    factors, stiffening = _cholesky(mass), None
+    factors, stiffening = cholesky(mass), None
     if factors is None:
         stiffening = _stiffening(mass, jacobian)
-        factors = _cholesky(mass + stiffening @ jacobian)
+        factors = cholesky(mass + stiffening @ jacobian)
     if factors is None:
-        masses = np.linalg.eigvalsh(mass)
-        indefinite = (masses[..., 0] < -NEGATIVE * np.max(np.abs(masses), axis=-1)).any()
-        raise HolonomError(ErrorKind.MASS_INDEFINITE if indefinite else ErrorKind.MASS_SINGULAR)
+        raise not_positive_definite(mass)
     directions = factors[1] @ np.matrix_transpose(rows)
     lengths = or_one(np.sqrt(np.einsum("...sb,...sb->...b", directions, directions)))
     return WeightedConstraints(*factors, 1 / (peaks * lengths), directions / lengths[..., None, :], stiffening)
@@ -117,11 +115,21 @@ def rank_of(singular_values: Vector, negligible: float = DEPENDENT) -> int:
     return int(np.count_nonzero(singular_values > negligible * singular_values.max(initial=0.0)))
 
 
-def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
+def cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
     """Return L, lower triangular, and its inverse, or None if a metric is singular.
 
     The diagonal of the metric is scaled to one. The last pivot alone does not decide, because the pivots before it can
     first amplify rounding errors.
+
+    Parameters
+    ----------
+    metric : ndarray, shape (n, n) or (k, n, n)
+        Symmetric.
+
+    Returns
+    -------
+    tuple of ndarray, or None
+        Each of the shape of the metric.
     """
     lengths = np.sqrt(or_one(np.diagonal(metric, axis1=-2, axis2=-1)))[..., None]
     scaled = metric / (lengths * np.matrix_transpose(lengths))
@@ -134,6 +142,23 @@ def _cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
     condition = np.prod([np.abs(each).sum(axis=-2).max(axis=-1, initial=0.0) for each in squares], axis=0)
     regular = (condition * SINGULAR_MASS <= 1).all()
     return (lengths * factor, inverse / np.matrix_transpose(lengths)) if regular else None
+
+
+def not_positive_definite(mass: Matrix) -> HolonomError:
+    """Return the error of a mass matrix that is singular or indefinite.
+
+    Parameters
+    ----------
+    mass : ndarray, shape (n, n) or (k, n, n)
+        A.
+
+    Returns
+    -------
+    HolonomError
+    """
+    masses = np.linalg.eigvalsh(mass)
+    indefinite = (masses[..., 0] < -NEGATIVE * np.max(np.abs(masses), axis=-1)).any()
+    return HolonomError(ErrorKind.MASS_INDEFINITE if indefinite else ErrorKind.MASS_SINGULAR)
 
 
 def or_one(lengths: Vector) -> Vector:
