@@ -10,7 +10,7 @@ needed.
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,7 +18,7 @@ from functools import cached_property
 from mpmath import mp
 
 from ..description import DescribedScene, Description
-from ..expression.trees import Tree
+from ..expression.trees import Tree, converted
 from .law import DATA_DIGITS, Law, Spline, number
 from .tape import Tape
 from .taylor import Polynomial, Taylor
@@ -48,8 +48,10 @@ class DescribedMotion:
 
         self._kinetic = [tape.place(part.tree) for part in called(system.kinetic_energy)]
         self._potential = [tape.place(part.tree) for part in called(system.potential_energy)]
+        zeros = [name for name, (value,) in self.parameters().items() if not value]
         self._forces = [
-            [tape.place(part.trees[s]) for part in called(system.forces)] for s in range(len(system.coordinates))
+            [tape.place(_without_zeros(part.trees[s], zeros)) for part in called(system.forces)]
+            for s in range(len(system.coordinates))
         ]
         self.constraints = [tape.place(tree) for tree in system.constraint_trees]
         self.outputs = [] if scene is None else [tape.place(tree) for tree in _plain(scene.servo_trees)]
@@ -328,6 +330,21 @@ class DescribedMotion:
 
 def _sizes(x: Polynomial) -> Polynomial:
     return tuple(map(abs, x))
+
+
+def _without_zeros(tree: Tree, zeros: Container[str]) -> Tree:
+    """Return the tree with 0 for names that are zero, and for products with them."""
+
+    def expanded(part: Tree) -> tuple[Callable[..., Tree], list[Tree]]:
+        match part:
+            case [("Add" | "Negate") as head, *arguments]:
+                return lambda *found: [head, *found] if any(found) else 0, arguments
+            case ["Multiply", *arguments]:
+                return lambda *found: 0 if 0 in found else ["Multiply", *found], arguments
+            case _:
+                return lambda: 0 if part in zeros else part, []
+
+    return converted(tree, expanded)
 
 
 def _plain(trees: Sequence) -> list:

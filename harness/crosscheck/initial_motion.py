@@ -361,16 +361,17 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
 def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
     """Return the symbols that have no closed form.
 
-    They share residuals with many symbols, or with one that is not linear in them.
+    They share residuals with many symbols, or with one that is not linear in them. Or the residuals are more than the
+    symbols: those that a closed form is made of may depend on each other in the initial state.
     """
     found: set[sp.Symbol] = set()
     waiting = set(numbers)
     while waiting:
         sharing = _sharing(next(iter(waiting)), numbers, containing)
         waiting -= sharing
-        if len(sharing) >= MANY_TOGETHER or any(
-            residual.diff(x).free_symbols & numbers for x in sharing for residual in containing[x]
-        ):
+        residuals = {residual for x in sharing for residual in containing[x]}
+        linear = not any(residual.diff(x).free_symbols & numbers for x in sharing for residual in residuals)
+        if len(sharing) >= MANY_TOGETHER or len(residuals) > len(sharing) or not linear:
             found |= sharing
     return found
 

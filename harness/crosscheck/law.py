@@ -159,7 +159,7 @@ def _with_names(tree: Tree) -> Tree:
             return tree
 
 
-SWITCHING = ("Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
+SWITCHING = ("Abs", "Sign", "Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
 
 
 def is_switched(tree: Tree, heads: Sequence[str] = SWITCHING) -> bool:

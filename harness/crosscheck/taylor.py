@@ -124,9 +124,10 @@ class Taylor:
             for _ in range(int(exponent)):
                 found = self.multiply(found, x)
             return found
-        if not any(x) and exponent * (self.order + 1) > self.order:  # x = O(t^(order + 1))
-            return (mp.zero,)
         whole = exponent == int(exponent)
+        least = 1 if any(x) else self.order + 1  # x = O(t^least) if x[0] is zero
+        if not x[0] and (whole or not any(x)) and exponent * least > self.order:
+            return (mp.zero,)
         if not x[0] or (x[0] < 0 and not whole):
             raise IrregularPoint
         first = x[0] ** int(exponent) if whole else mp.power(x[0], exponent)

@@ -51,7 +51,8 @@ def show_series(console: "Console", motion: "MotionSeries", values: "Values | No
         size += f"{described(radius)}; "
     console.print(f"{motion.arithmetic} arithmetic; radius of convergence: {size}{radius.note}", soft_wrap=True)
     if motion.switch is not None:
-        console.print(f"This is the motion as long as {motion.switch} keeps its sign.", soft_wrap=True)
+        until = f"as long as {motion.switch} keeps its sign"
+        console.print(f"From t = {motion.t0} on this is the motion, {until}.", soft_wrap=True)
     for z in radius.singularities:
         console.print(f"    singularity at t - t0 = {z.real:.8g} {z.imag:+.8g} i")
     if values is not None:

@@ -627,6 +627,8 @@ class HybridMotion:
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
         if self.problem.servo.constraints and not continuous:
             self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
+        if self.problem.reacting and not continuous:
+            self._require_no_friction(new, as_floats(moved - state)[n:], kick, sign, t)
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
@@ -650,6 +652,19 @@ class HybridMotion:
                 t,
                 translatable(
                     "servo-constraints would take an impulse of the controls as %(sign)s changes its sign", sign=sign.of
+                ),
+            )
+
+    def _require_no_friction(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
+        """Reject a change of velocities by an impulse of multipliers that forces contain."""
+        impulse = at.mass @ change - kick
+        shares = at.jacobian.T * np.linalg.lstsq(at.jacobian.T, impulse)[0]
+        reacting = [name in self.problem.reacting for name in self.problem.multipliers]
+        if np.max(np.abs(shares[:, reacting])) > CONTINUOUS * np.max(np.abs(impulse)):
+            self._reject(
+                t,
+                translatable(
+                    "forces contain multipliers that have an impulse as %(sign)s changes its sign", sign=sign.of
                 ),
             )
 

@@ -63,11 +63,11 @@ class SwitchingFunctions(SignedFunctions):
         self._constants = precision.numbers([pattern[name] == SLIDING for name, *_ in self._rows])[:, None]
         self._slopes = precision.numbers([-to for _, to, _ in self._rows])[:, None]
         rounding = mode.reactions_of_rounding
-        self._rounding = np.array([[rounding.get(name, 0.0)] for name, *_ in self._rows])
+        self._rounding = np.array([rounding.get(name, 0.0) for name, *_ in self._rows])[:, None]
         what = "surfaces", precision.name, frozenset(pattern.items()), frozenset(mode.time_events)
 
-        def compiled() -> Evaluation | None:
-            return evaluation(switching_functions(problem, pattern, names), precision) if names else None
+        def compiled() -> Evaluation:
+            return evaluation(switching_functions(problem, pattern, names), precision) if names else _none
 
         self._function = problem.once(what, problem.switching, compiled)
         self._friction = mode.friction
@@ -79,6 +79,10 @@ class SwitchingFunctions(SignedFunctions):
         found = self._constants + self._slopes * self._function(inputs)[self._of_rows]
         signed = as_floats(found) + self._rounding
         return np.concatenate([signed, self._friction.guards(inputs)]) if self._friction else signed
+
+
+def _none(inputs: Numbers) -> Numbers:
+    return inputs[:0]
 
 
 class Mode:

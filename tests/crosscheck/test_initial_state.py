@@ -223,6 +223,25 @@ def test_equal_and_short_corrections_disagreed(x, y, write_scene):
     assert {each.verdict for each in checked.verdicts if each.number == "12"} == {Verdict.AGREES}
 
 
+TURNED = """load("holonom.mac")$
+wheel : rigid_body(1, [1, 1, 2], [x, y, z], [e0, e1, e2, e3])$
+here : marker(wheel, [0, 0, 0], [0, 0, 1], [1, 0, 0])$
+there : marker(ground, [0, 0, 0], [0, 0, 1], [1, 0, 0])$
+system : holonomic_system(assembly(wheel, revolute_joint(here, there), prescribed_angle(here, there, phi)))$
+scene : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, e0 = 1, e1 = 0, e2 = 0, e3 = 0, phi = 0,
+  dot(phi) = 0, dot(e0) = 0], time_span = [0, 1])$
+"""
+
+
+def test_closed_forms_divided_by_zero_in_the_initial_state(write_scene):
+    """dot(e3)_0 = -dot(e0)_0 e0_0/e3_0, where e3_0 = 0."""
+    scene = write_scene(TURNED)
+    record = derived_record(scene)
+    values = {each.left_tree: each.right_tree for each in fixed_values(record.scenes[0]).relations}
+    assert values["dot(e3)_0"] == 0
+    assert not check_record(record, describe(scene)).disagreements
+
+
 def test_orientations_were_a_disagreement(write_scene):
     scene = write_scene(NEAR.replace("y^2 - 1]", "y^2 - 1, y - 3/5], orientations = [x]").format(x="4/5", y="3/5"))
     assert not check_record(derived_record(scene), describe(scene)).disagreements

@@ -37,6 +37,12 @@ def test_division_and_powers_undo_multiplication():
     assert agree(TAYLOR.power(X, mp.mpf(2)), TAYLOR.multiply(X, X))
 
 
+@pytest.mark.parametrize("exponent", range(1, 12))
+def test_whole_powers_of_what_vanishes_were_irregular(exponent):
+    x = (mp.zero, mp.mpf(2))
+    assert agree(TAYLOR.power(x, mp.mpf(exponent)), [2**exponent if k == exponent else 0 for k in range(ORDER + 1)])
+
+
 def test_composition_rates_and_integrals():
     assert agree(value_of(TAYLOR, "Exp", [value_of(TAYLOR, "Ln", [X])]), [*X, 0, 0])
     assert agree(TAYLOR.integral(TAYLOR.rate(Y), Y[0]), Y)

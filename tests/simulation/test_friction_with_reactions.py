@@ -59,6 +59,91 @@ def test_friction_with_a_reaction_in_more_digits_was_an_internal_error():
     assert float(str(many["x"][-1])) == pytest.approx(double["x"][-1], rel=1e-13)
 
 
+BLOCK = """
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [mu],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = 10*y], forces = [FORCE, 0],
+  constraints = [y - u])$
+scene : holonomic_scene(system, control_law = [u = LAW], parameter_values = [mu = 3/10], initial_state = [x = 0,
+  dot(x) = 2], time_span = [0, END])$
+"""
+
+
+def block(force, end=0.5, law="0"):
+    return of_text(BLOCK.replace("FORCE", force).replace("LAW", law).replace("END", str(end)))
+
+
+@pytest.mark.parametrize(
+    ("force", "velocity"),
+    [
+        ("-mu*lambda1", 0.5),
+        ("-mu*lambda1*dot(x)", 2 * np.exp(-1.5)),
+        ("-mu*lambda1*sin(t)", 2 - 3 * (1 - np.cos(0.5))),
+        ("-mu*lambda1*tanh(20*(3 + dot(x)))", 0.5),
+        ("-(if t < 1/4 then 0 else mu)*lambda1", 1.25),
+    ],
+)
+def test_multipliers_in_forces_without_a_sign_were_an_internal_error(force, velocity):
+    motion = block(force).simulate(samples=2)
+    assert motion["dot(x)"][-1] == pytest.approx(velocity, abs=1e-12)
+
+
+def test_no_friction_was_an_internal_error():
+    scene = holonom.system(f'load("holonom.mac")$ {BLOCK}'.replace("mu = 3/10", "mu = 0").replace("LAW", "0")
+                           .replace("FORCE", "-mu*abs(lambda1)*signum(dot(x)) + 1").replace("END", "2"))  # fmt: skip
+    assert scene.simulate(samples=2)["dot(x)"][-1] == pytest.approx(4)
+    assert not scene.check().disagreements
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        "if dot(x) > 0 then -mu*lambda1 elseif dot(x) < 0 then mu*lambda1 else 0",
+        "if dot(x) > 0 then -10*mu elseif dot(x) < 0 then 10*mu else 0",
+        "-mu*lambda1*(exp(signum(dot(x))) - exp(-signum(dot(x))))/(2*sinh(1))",
+        "-mu*lambda1*sin(%pi/2*signum(dot(x)))",
+        "-mu*(1 + exp(-10000*abs(dot(x))))*lambda1*signum(dot(x))",
+    ],
+)
+def test_friction_that_is_not_linear_in_a_sign_was_an_internal_error(force):
+    """Only its values on both sides count (Filippov)."""
+    motion = block(force, end=1).simulate(samples=2)
+    assert [motion["x"][-1], motion["dot(x)"][-1]] == pytest.approx([2 / 3, 0], abs=1e-7)
+    assert motion["lambda1"] == pytest.approx(10)
+
+
+def test_friction_by_a_function_of_sign_and_place_is_refused_at_rest_alone():
+    scene = block("-mu*lambda1*signum(dot(x))*exp(signum(dot(x))*x/10)", end=2)
+    found = scene.simulate(until="1/2", samples=2)
+    true = solve_ivp(lambda t, s: [s[1], -3 * np.exp(s[0] / 10)], (0, 0.5), [0, 2], rtol=1e-12, atol=1e-13).y[:, -1]
+    assert [found["x"][-1], found["dot(x)"][-1]] == pytest.approx(true, abs=1e-10)
+    with failing(ErrorKind.NO_WAY_ON):
+        scene.simulate()
+
+
+ROPE = """
+system : holonomic_system(coordinates = [x, y], parameters = [m], kinetic_energy = (m*dot(x)^2 + dot(y)^2)/2,
+  potential_energy = [gravity = -10*(m*x + y)], constraints = [-x - y],
+  forces = [rope = [-lambda1*(exp(%pi/5*signum(dot(x))) - 1), 0]])$
+scene : holonomic_scene(system, parameter_values = [m = 3], initial_state = [x = 0, dot(x) = 0], time_span = [0, 1])$
+"""
+
+
+@pytest.mark.parametrize(("m", "side"), [("3", 1), ("3/2", 0), ("1/2", -1)])
+def test_a_rope_on_a_rough_pulley_slips_or_stays(m, side):
+    """Its tensions differ by the factor exp(mu pi) at most (Euler)."""
+    ratio, mass = np.exp(side * np.pi / 5), float(Fraction(m))
+    acceleration = 10 * (mass - ratio) / (mass + ratio) if side else 0
+    motion = of_text(ROPE).simulate(samples=2, m=m)
+    assert motion["dot(x)"][-1] == pytest.approx(acceleration, abs=1e-12)
+
+
+@pytest.mark.parametrize("law", ["if t < 1/4 then 0 else t - 1/4", "abs(t - 1/4)"])
+def test_an_impulse_of_a_reaction_left_out_its_friction(law):
+    with failing(ErrorKind.NO_WAY_ON):
+        block("-mu*abs(lambda1)*signum(dot(x))", law=law).simulate()
+    assert block("-2*mu*signum(dot(x))", law=law).simulate(samples=2)["dot(x)"][-1] == pytest.approx(1.7)
+
+
 BELT = """
 system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + 2*dot(z)^2)/2,
   forces = [-2*x - (1 + exp(-3*abs(dot(x) - dot(z))))*signum(dot(x) - dot(z)),

@@ -585,6 +585,17 @@ def test_switching_function_may_jump_where_another_sign_changes(force, initial, 
     assert found["dot(x)"][-1] == pytest.approx(velocity, abs=1e-8)
 
 
+@pytest.mark.parametrize("law", ["if t < 1 then 0 else (t - 1)^2", "max(0, t - 1)^2", "abs(t - 1)*(t - 1)"])
+def test_a_law_whose_pieces_meet_at_the_start_was_refused(law):
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [y - u])$
+scene : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 2], time_span = [1, 2])$""")
+    found = scene.simulate(samples=2)
+    assert [found["y"][-1], found["dot(y)"][-1], *found["lambda1"]] == pytest.approx([1, 2, 12, 12])
+    assert not scene.check().disagreements
+
+
 def test_function_of_the_velocities_may_jump_with_an_impulse():
     """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
     scene = holonom.system("""
