@@ -421,7 +421,7 @@ def _verify_rounded(comparison: Comparison) -> CheckResult:
     for pair in comparison.pairs:
         difference = (pair.derived - pair.independent).xreplace(exact)
         changing = [x for x in comparison.rounded if x in difference.free_symbols]
-        terms = sp.Add.make_args(difference)
+        terms = [*sp.Add.make_args(pair.derived), *sp.Add.make_args(pair.independent)]
         slopes = [x * difference.diff(x) for x in changing]
         steps = Steps([difference, pair.derived, pair.independent, *terms, *slopes])
         with mp.workdps(CONFIRMING_DIGITS):

@@ -12,6 +12,7 @@
 (defvar *digits-at-point* 80)
 (defvar *zero-share* (expt 10 -20) "Sums that cancel to less of their largest term are zero.")
 (defvar *zero-share-of-constraints* (expt 10 -55))
+(defvar *zero-share-of-others* (expt 10 -45) "On the manifold, of constraints that Newton's method did not look at.")
 (defvar *zero-share-of-floats* 1d-12)
 (defvar *share-of-dependence* (expt 10 -6) "The same of gradients, at a point given in some ten digits.")
 (defvar *close* double-float-epsilon "A correction in floating point by less of the largest coordinate is the last.")
@@ -129,6 +130,15 @@
   "Sparse rows [[column, term], ...] in numbers, zeros left out; false where one has no real value."
   (catch 'irregular-point
     (cons '(mlist) (mapcar #'(lambda (row) (maxima-row (row-at-point row point))) (cdr rows)))))
+
+(defun $vanish_on_manifold (terms point)
+  "Whether terms are zero at a point that Newton's method has found."
+  (let ((*zero-share* *zero-share-of-others*)
+        (point (make-sample-point :symbols (sample-point-symbols point)))
+        (zero nil))
+    (catch 'irregular-point
+      (setq zero (all-of-p #'(lambda (term) (zerop (value-at (expression-term term) point))) (cdr terms))))
+    zero))
 
 (defun row-at-point (row point)
   "The entries (column . number) that are not zero, in the order of their columns."
@@ -351,6 +361,12 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
                     (* (rational-of (third share)) (if (> value zero) value least))))
           (cdr shares) values)
     moved))
+
+(defun $shifted_point (point shifts)
+  "The point, each  name = shift  moved by this."
+  (let ((moved (copied-point point)))
+    (dolist (shift (cdr shifts) moved)
+      (incf (gethash (second shift) (sample-point-symbols moved)) (rational-of (third shift))))))
 
 (defun copied-point (point) (converted-point point #'identity))
 

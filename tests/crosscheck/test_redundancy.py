@@ -3,6 +3,7 @@
 import dataclasses
 
 import pytest
+from refusing import refused
 
 import holonom
 from holonom.crosscheck.check import check_record
@@ -70,3 +71,12 @@ def test_a_constraint_that_follows_for_all_values_and_is_not_listed_is_found():
     derived = dataclasses.replace(scene.record.derivations[0], redundant=())
     found = verdicts_of(dataclasses.replace(scene.record, derivations=(derived,)), scene)
     assert found["redundant_constraints"] is Verdict.DISAGREES
+
+
+@pytest.mark.parametrize("flat", ["t^6", "t^41", "t^12", "sin(t)^8", "w^10"])
+def test_constraints_that_contradict_each_other_later_were_redundant(flat):
+    """The motion was free: near the initial time the second constraint nearly holds."""
+    text = GUIDES.replace("parameters = [a]", "controls = [w]" if "w" in flat else "parameters = []")
+    text = text.replace("parameter_values = [a = {a}]", "control_law = [w = t]" if "w" in flat else 'title = "flat"')
+    with refused("irregular_constraints"):
+        holonom.system(text.format(second=f"y - x - {flat}")).free()

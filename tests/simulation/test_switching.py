@@ -596,6 +596,16 @@ scene : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 
     assert not scene.check().disagreements
 
 
+def test_a_function_of_a_control_has_its_sign_by_the_part_of_the_law():
+    """The signs of the law were found after those of functions of the control, and the check disagreed."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [max(0, 3/2 - u)])$
+scene : holonomic_scene(system, control_law = [u = if sin(t + 4) > 0 then 1 else 2],
+  initial_state = [x = 0, dot(x) = 0], time_span = [0, 3])$""")
+    assert scene.simulate(samples=2)["dot(x)"][-1] == pytest.approx((3 - (2 * math.pi - 4)) / 2)
+    assert not scene.check().disagreements
+
+
 def test_function_of_the_velocities_may_jump_with_an_impulse():
     """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
     scene = holonom.system("""
