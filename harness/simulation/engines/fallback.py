@@ -139,10 +139,9 @@ class FallbackEngine:
         obstruction, request = self._task.problem.obstruction, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstruction is None else FALLBACK
         if self._task.problem.reacting and (obstruction is not None or chosen == FALLBACK):
-            raise HolonomError(
-                ErrorKind.REACTING,
-                detail=translatable("and the robust engine is needed: %(reason)s", reason=obstruction or chosen),
-            )
+            needed = translatable("and the robust engine is needed: %(reason)s", reason=obstruction or "")
+            refusing = translatable("which the robust engine does not take")
+            raise HolonomError(ErrorKind.REACTING, detail=needed if obstruction else refusing)
         if obstruction is not None and engine_class(chosen).fixed_pivots:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
         first = engine_class(chosen)(self._task)
