@@ -103,10 +103,11 @@ class DescribedEquations:
         self._steps = Steps(self._smooth)
 
     @cached_property
-    def may_feed_energy(self) -> bool:
-        """False if no force increases the energy while the controls are constant.
+    def energy_change(self) -> str:
+        """Change of the energy by forces: conserved, dissipated or open.
 
-        Forces have a potential, or are gyroscopic or dissipative: linear, or by the signs of factors of their power.
+        The controls are constant. Forces have a potential, or are gyroscopic or dissipative: linear, or by the signs
+        of factors of their power.
         """
         q, v = self._groups["q"], self._groups["v"]
         constant = dict.fromkeys([*self._groups["du"], *self._groups["ddu"]], 0)
@@ -115,10 +116,21 @@ class DescribedEquations:
         at_rest = forces.subs(dict.fromkeys(v, 0))
         slopes = at_rest.jacobian(q)
         power = sp.expand((forces - at_rest).dot(v))
+        if any(sp.simplify(each) != 0 for each in slopes - slopes.T):
+            return "open"
+        if power == 0:
+            return "conserved"
         damping = -sp.hessian(power, v) / 2
         linear = not damping.free_symbols and sp.expand(power + (sp.Matrix([v]) * damping).dot(v)) == 0
         takes = bool(damping.is_positive_semidefinite) if linear else bool(sp.factor(power).is_nonpositive)
-        return not (takes and all(sp.simplify(each) == 0 for each in slopes - slopes.T))
+        return "dissipated" if takes else "open"
+
+    @property
+    def linear(self) -> bool:
+        """True if the equations are linear for constant controls."""
+        moving = [symbol for group in ("q", "v", "a", "lambda") for symbol in self._groups[group]]
+        polynomials = [each.as_poly(*moving) for each in self._at_rest]
+        return all(each is not None and each.total_degree() <= 1 for each in polynomials)
 
     @property
     def changes_with_time(self) -> bool:
@@ -767,7 +779,15 @@ def _conditions_on_stability(
         case "stable":
             symmetric = N.T @ here["equation_by_q"] @ N if len(N) == n else K
             positive = m == 0 or np.linalg.eigvalsh((symmetric + symmetric.T) / 2)[0] > rounding
-            yield Condition(f"{place}minimum of the energy", equations.may_feed_energy or not positive)
+            minimum = positive and equations.energy_change != "open"
+            yield Condition(f"{place}stability", not (minimum or _swings(equations, truth, clear)))
+
+
+def _swings(equations: DescribedEquations, eigenvalues: Vector, clear: float) -> bool:
+    """Return True if a linear conservative system has simple imaginary eigenvalues."""
+    apart = np.abs(eigenvalues[:, None] - eigenvalues) + np.diag(np.full(len(eigenvalues), np.inf))
+    simple = bool(np.all(apart > 2 * clear) and np.all(np.abs(eigenvalues.real) <= clear))
+    return simple and equations.energy_change == "conserved" and equations.linear
 
 
 def _rounding_of_stiffness(

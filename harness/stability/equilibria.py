@@ -2,13 +2,15 @@
 
 At rest the equations of motion are r(q, lambda) = 0, f(q) = 0, where the gradients of f are independent. Newton's
 method solves them from many random starting points. More solutions may exist, unless
-`holonom.stability.real_solutions` counts as many. Stability follows from two theorems:
+`holonom.stability.real_solutions` counts as many. Stability follows from three theorems:
 
 - If all forces have a potential, or are gyroscopic or linear and dissipative, q is stable if the second variation of
   V - T0 on the constraint manifold is positive definite: the energy has a strict minimum there, and never grows
   (Lagrange and Dirichlet; Merkin, Introduction to the Theory of Stability, chapters 3 and 6).
 - It is asymptotically stable if all eigenvalues of the linearised motion have negative real parts, and unstable if one
   has a positive real part (Lyapunov; Merkin, chapter 4).
+- If the equations of motion are linear and the energy is conserved, it is stable if all eigenvalues are simple and
+  imaginary, also at a maximum of the energy: gyroscopic stabilization (Merkin, chapter 6).
 
 Otherwise the stability is undecided.
 """
@@ -36,7 +38,7 @@ from ..simulation.matrices import Matrix, Vector, start_of
 from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
 from .equivalence import Equivalence
-from .linear_equations import LinearEquations, Point
+from .linear_equations import EnergyChange, LinearEquations, Point
 from .linearization import Linearization, linearized, perturbed_eigenvalues
 from .repetition import reversible, whole_turns
 from .smoothness import is_smooth, with_limits
@@ -544,7 +546,7 @@ class _Search:
             name,
             dict(zip(self._equations.coordinates, map(float, found.q), strict=True)),
             dict(zip(self._equations.multipliers, map(float, found.multipliers), strict=True)),
-            _stability(found, linear.A, self._equations.forced),
+            _stability(found, linear.A, self._equations),
             found.isolated,
             linear,
         )
@@ -797,16 +799,30 @@ def _same(one: Vector, other: Vector) -> bool:
     return bool(np.all(np.abs(one - other) <= SAME * np.max(np.abs([one, other]), initial=0.0)))
 
 
-def _stability(found: _Solution, A: Matrix, forced: bool) -> Stability:
+def _stability(found: _Solution, A: Matrix, equations: LinearEquations) -> Stability:
     """Decide the stability by the eigenvalues of A or the second variation."""
     entries = np.zeros_like(A)
     entries[len(found.stiffness) :, : len(found.stiffness)] = found.error
     parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real, entries)
     if len(A) and np.all(certain & (parts < 0)):
         return Stability.ASYMPTOTIC
-    if not forced and np.all(np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2) > found.least):
+    minimum = np.all(np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2) > found.least)
+    if minimum and equations.energy is not EnergyChange.OPEN:
+        return Stability.STABLE
+    if equations.energy is EnergyChange.CONSERVED and equations.linear and _swings(A, entries):
         return Stability.STABLE
     return Stability.UNSTABLE if np.any(certain & (parts > 0)) else Stability.UNDECIDED
+
+
+def _swings(A: Matrix, entries: Matrix) -> bool:
+    """Return True if a linear conservative system has simple imaginary eigenvalues.
+
+    They are symmetric about the imaginary axis. One that may lie on it lies on it, if there is no other nearby.
+    """
+    values, moved, conditions = perturbed_eigenvalues(A, PERTURBED, entries)
+    apart = np.abs(values[:, None] - values) + np.diag(np.full(len(values), np.inf))
+    simple = np.all(apart > 2 * (moved[:, None] + moved)) and np.all(conditions < NEARLY_DEFECTIVE)
+    return bool(simple and np.all(np.abs(values.real) <= moved))
 
 
 def certain_distances(

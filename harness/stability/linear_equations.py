@@ -9,6 +9,7 @@ and the first and second time derivatives of the latter.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from functools import cached_property
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ from ..formats import Document, read
 from ..program.motion_program import Expression, Name, Operation, Program, calls_of, names_used
 from ..program.numpy_function import NumpyFunction
 from ..program.request import Request
-from ..program.rewriting import with_factors
+from ..program.rewriting import computing, with_factors
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
 from ..schema import Names
@@ -33,6 +34,14 @@ ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df,
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
 FACTORS = 61  # different rounding errors at one point
 SIGNED = (Operation.SIGN, Operation.ABS)
+
+
+class EnergyChange(StrEnum):
+    """Changes of the energy by forces."""
+
+    CONSERVED = "conserved"
+    DISSIPATED = "dissipated"
+    OPEN = "open"
 
 
 @dataclass(frozen=True)
@@ -57,7 +66,7 @@ class LinearEquations:
         "Number of servo-constraints, the last of the constraints. Their multipliers are zero.", minimum=0
     )
     tables: tuple[Table, ...] = entry("Tables of the law, as of a motion problem.")
-    forced: bool = entry("Whether forces act that are not known to keep or take energy.")
+    energy: EnergyChange = entry("Change of the energy by forces while the controls are at rest.")
     law: Program | None = entry(
         "Program of t and the tables' inputs: u, dot(u), ddot(u) of the controls with a law; null if one has none."
     )
@@ -137,6 +146,13 @@ class LinearEquations:
     def changes_with_time(self) -> bool:
         """True if the equations contain the time other than through the controls."""
         return "t" in names_used(self.program)
+
+    @property
+    def linear(self) -> bool:
+        """True if the gradients are known to be constant for constant controls."""
+        gradients = {name for name in self.program.outputs if "_by_" in name and not name.startswith("output")}
+        moving = {*self.program.inputs[: 1 + 3 * len(self.coordinates)], *self.multipliers}
+        return names_used(computing(self.program, gradients)).isdisjoint(moving)
 
     def controls_at(self, t: float) -> Vector:
         """Return u, dot u and ddot u under the law.

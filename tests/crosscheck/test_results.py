@@ -328,6 +328,35 @@ def test_a_wrong_stability_disagrees(place, stated):
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 
+SADDLE = """system : holonomic_system(coordinates = [x, y, z], parameters = [w, c],
+  kinetic_energy = ((dot(x) - w*y)^2 + (dot(y) + w*x)^2)/2, potential_energy = POTENTIAL,
+  forces = [damping = [-c*dot(x), -c*dot(y), 0]], constraints = [z - x - y])$
+rest : holonomic_scene(system, parameter_values = [w = 2, c = 0],
+  initial_state = [x = 0, y = 0, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$"""
+
+
+@pytest.mark.parametrize(
+    ("w", "c", "bend", "verdict"),
+    [
+        ("2", "0", "", "stable"),
+        ("101/100", "0", "", "stable"),
+        ("9/10", "0", "", "unstable"),
+        ("2", "1e-5", "", "unstable"),
+        ("2", "0", " - x^4", "undecided"),
+    ],
+)
+def test_a_rotating_saddle_is_stable_as_far_as_the_theorem_goes(w, c, bend, verdict):
+    """Of Brouwer: (w^2 - 1)(w^2 + 1/2) > 0. Dissipation destroys it (Thomson and Tait), other terms leave it open."""
+    scene = holonom.system(SADDLE.replace("POTENTIAL", f"x^2/2 - y^2/4{bend}")).with_settings(w=w, c=c)
+    content = json.loads(json.dumps(published(Publication.EQUILIBRIA, scene.equilibria().document())))
+    (top,) = (each for each in content["found"] if not any(each["coordinates"].values()))
+    assert top["stability"] == verdict
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    top["stability"] = "stable"
+    found = verify_result(scene.description, content).verdict
+    assert found is (Verdict.AGREES if verdict == "stable" else Verdict.DISAGREES)
+
+
 def test_deviations_through_switchings_are_not_checked():
     scene = holonom.system(FORCED.replace("cos(%pi*t + 1)", "signum(sin(%pi*t + 1))"))
     content = json.loads(json.dumps(along(scene)))

@@ -139,8 +139,11 @@ def test_controls_are_constant():
         ("potential_energy = x^2 - y^2", Stability.UNSTABLE),
         ("potential_energy = x^2 + y^4", Stability.UNDECIDED),  # the second variation does not decide
         ("potential_energy = x^2 - y^4", Stability.UNDECIDED),
-        # gyroscopic forces hold it on a hill: stable, but neither theorem says so
-        ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x))", Stability.UNDECIDED),
+        # gyroscopic forces on a hill: no theorem says whether terms of higher order make it unstable
+        ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x))", Stability.STABLE),
+        ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x)) - x^4", Stability.UNDECIDED),
+        ("potential_energy = -(x^2 + y^2)/2 + 3*(x*dot(y) - y*dot(x)), forces = [-dot(x)*x^2, 0]", Stability.UNDECIDED),
+        ("potential_energy = -(x^2 + y^2)/2 + (x*dot(y) - y*dot(x))", Stability.UNDECIDED),  # on the border
         ("potential_energy = x^2 + y^2, forces = [-dot(x), -dot(y)]", Stability.ASYMPTOTIC),
         ("potential_energy = x^2 + y^2, forces = [-dot(x), 0]", Stability.STABLE),  # y swings on
         ("potential_energy = x^2 + y^2, forces = [3*dot(y) - dot(x), -3*dot(x)]", Stability.ASYMPTOTIC),
