@@ -13,7 +13,8 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import NamedTuple
 
 from mpmath import mp
 
@@ -50,7 +51,7 @@ class DescribedMotion:
         self._potential = [tape.place(part.tree) for part in called(system.potential_energy)]
         zeros = [name for name, (value,) in self.parameters().items() if not value]
         self._forces = [
-            [tape.place(_without_zeros(part.trees[s], zeros)) for part in called(system.forces)]
+            [tape.place(_without_zeros(part.trees[s], zeros, system.multipliers)) for part in called(system.forces)]
             for s in range(len(system.coordinates))
         ]
         self.constraints = [tape.place(tree) for tree in system.constraint_trees]
@@ -332,19 +333,30 @@ def _sizes(x: Polynomial) -> Polynomial:
     return tuple(map(abs, x))
 
 
-def _without_zeros(tree: Tree, zeros: Container[str]) -> Tree:
-    """Return the tree with 0 for names that are zero, and for products with them."""
+class _Part(NamedTuple):
+    """A part of a force."""
 
-    def expanded(part: Tree) -> tuple[Callable[..., Tree], list[Tree]]:
+    tree: Tree
+    vanishes: bool
+    reacts: bool
+
+
+def _without_zeros(tree: Tree, zeros: Container[str], multipliers: Container[str]) -> Tree:
+    """Return a force without the products of multipliers and parameters that are zero."""
+
+    def whole(head: str, *parts: _Part) -> _Part:
+        zero, reacts = [part.vanishes for part in parts], any(part.reacts for part in parts)
+        vanishes = any(zero) if head == "Multiply" else head in ("Add", "Negate") and all(zero)
+        return _Part(0 if vanishes and reacts else [head, *(part.tree for part in parts)], vanishes, reacts)
+
+    def expanded(part: Tree) -> tuple[Callable[..., _Part], list[Tree]]:
         match part:
-            case [("Add" | "Negate") as head, *arguments]:
-                return lambda *found: [head, *found] if any(found) else 0, arguments
-            case ["Multiply", *arguments]:
-                return lambda *found: 0 if 0 in found else ["Multiply", *found], arguments
+            case [str(head), *arguments]:
+                return partial(whole, head), arguments
             case _:
-                return lambda: 0 if part in zeros else part, []
+                return lambda: _Part(part, part in zeros, part in multipliers), []
 
-    return converted(tree, expanded)
+    return converted(tree, expanded).tree
 
 
 def _plain(trees: Sequence) -> list:

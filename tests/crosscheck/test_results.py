@@ -328,6 +328,10 @@ def test_a_wrong_stability_disagrees(place, stated):
     assert verify_result(scene.description, content).verdict is Verdict.DISAGREES
 
 
+UNDAMPED = """system : holonomic_system(coordinates = [x, y], parameters = [c], kinetic_energy = dot(x)^2 + dot(y)^2,
+  forces = [drag = [-c*dot(x), 0]], constraints = [x^2 + y^2 - 1])$
+s : holonomic_scene(system, parameter_values = [c = 0], initial_state = [x = 3/5, y = 4/5, dot(x) = 1],
+  time_span = [0, 1])$"""
 SADDLE = """system : holonomic_system(coordinates = [x, y, z], parameters = [w, c],
   kinetic_energy = ((dot(x) - w*y)^2 + (dot(y) + w*x)^2)/2, potential_energy = POTENTIAL,
   forces = [damping = [-c*dot(x), -c*dot(y), 0]], constraints = [z - x - y])$
@@ -355,6 +359,16 @@ def test_a_rotating_saddle_is_stable_as_far_as_the_theorem_goes(w, c, bend, verd
     top["stability"] = "stable"
     found = verify_result(scene.description, content).verdict
     assert found is (Verdict.AGREES if verdict == "stable" else Verdict.DISAGREES)
+
+
+def test_derivatives_by_a_coefficient_that_is_zero():
+    """Products with it are left out where they contain multipliers alone."""
+    scene = holonom.system(PENDULUM.replace("-dot(x)/2", "-(m - 3/2)*dot(x)"))
+    content = json.loads(json.dumps(series_document(scene.series(order=4, sensitivities=["m"]))))
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    scene = holonom.system(UNDAMPED)
+    content = json.loads(json.dumps(series_document(scene.series(order=4, sensitivities=["c"]))))
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
 
 
 def test_deviations_through_switchings_are_not_checked():
