@@ -35,7 +35,9 @@ AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
-LIGHT = 1e-6  # of the largest coordinate in the mass metric: less may be rounding of a mass, as of e0 at a half turn
+PROBE = 2.0**-10  # share of the largest coordinate by which all are moved, to find masses that vanish at the start
+VANISHING = 1e-12  # of the mass there: one that vanishes at the start
+NONE = 1e-13  # of the largest coordinate: another one that is zero but for rounding, if a mass vanishes
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
 Vector = NDArray[np.float64]
@@ -260,10 +262,24 @@ def _completed(problem: MotionProblem, span: float) -> Nominal:
     state = np.array([[float(problem.start[name])] for name in problem.state])
     values, n = np.reshape(problem.numbers, (-1, 1)), len(problem.coordinates)
     with np.errstate(all="ignore"):
-        masses = _Outputs(problem, problem.matrices, [f"A[{s},{s}]" for s in range(1, n + 1)])
-        roots = _roots(masses(np.array([float(problem.start["t"])]), state, values))
-        sizes = _sizes(problem, roots, state, values, span)
+        outputs = _Outputs(problem, problem.matrices, [f"A[{s},{s}]" for s in range(1, n + 1)])
+        masses, state = _without_rounding(lambda q: outputs(np.array([float(problem.start["t"])]), q, values), state)
+        sizes = _sizes(problem, _roots(masses), state, values, span)
     return Nominal(float(sizes.time[0]), sizes.state[:, 0])
+
+
+def _without_rounding(masses: Callable[[Matrix], Matrix], state: Matrix) -> tuple[Matrix, Matrix]:
+    """Return masses and a state, shapes (n, 1) and (2n, 1), zero where they are rounding.
+
+    A mass may vanish in the state alone, as of a body's e0 where it has not turned. Coordinates beside it may be zero
+    by rounding: their sizes would be tolerances that are too fine, and divisors.
+    """
+    q, rates = np.split(state, 2)
+    largest, here = np.max(np.abs(q), initial=0.0), masses(state)
+    here = np.where(here < VANISHING * masses(np.concatenate([q + PROBE * largest, rates])), 0.0, here)
+    if not here.all():
+        q = np.where(np.abs(q) <= NONE * largest, 0.0, q)
+    return here, np.concatenate([q, rates])
 
 
 def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> Nominal:
@@ -304,8 +320,7 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
     own = np.maximum(q, v * time)
     felt = (roots * own >= NEAR_ZERO * size) | (own >= NEAR_ZERO * np.max(own, axis=0, initial=0.0))
     felt &= own > 0
-    moved = felt & (roots * own >= LIGHT * size)
-    least = np.min(np.where(moved, roots * own, np.inf), axis=0, initial=np.inf)
+    least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
     return _with_given(problem, np.where((size > 0) & (size < np.inf), found, 1.0), time)
 

@@ -342,7 +342,7 @@ class _Search:
         """
         if self._problem.obstruction is None:
             return len(self._independent)
-        return self._tangent(self._start).rank
+        return self._tangent(self._start, self._first).rank
 
     def equivalence(self, random: np.random.Generator) -> Equivalence:
         """Return the changes of coordinates that leave a state as it is."""
@@ -562,7 +562,7 @@ class _Search:
         if not all(np.isfinite(each).all() for name, each in here.items() if not name.startswith("output")):
             return None
         try:
-            tangent = self._tangent(here)
+            tangent = self._tangent(here, q)
         except HolonomError:
             return None
         gradients = np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
@@ -575,8 +575,10 @@ class _Search:
         stiffness = tangent.basis.T @ changes @ tangent.basis
         return stiffness, float(bound), self._error(q, multipliers, tangent, stiffness)
 
-    def _tangent(self, here: Mapping[str, Matrix]) -> Tangent:
-        return Tangent(here["equation_by_a"], here["constraint_by_q"], self._nominal.coordinates)
+    def _tangent(self, here: Mapping[str, Matrix], q: Vector) -> Tangent:
+        mass = here["equation_by_a"]
+        point = self._point(q, np.zeros(len(self._equations.multipliers)))
+        return Tangent(mass, here["constraint_by_q"], self._equations.masses_near(point, mass))
 
     def _with_limits_at(self, q: Vector, multipliers: Vector) -> Mapping[str, Matrix]:
         point, equations = self._point(q, multipliers), self._equations
@@ -637,7 +639,7 @@ class _Search:
         J, unbalanced = here["constraint_by_q"], here["equation"]
         try:
             multipliers[self._independent] += np.linalg.lstsq((J * self._sizes).T, self._sizes * unbalanced)[0]
-            basis = self._tangent(here).next_to(tangent.basis).basis
+            basis = self._tangent(here, q).next_to(tangent.basis).basis
             return basis.T @ self._at(q, multipliers)["equation_by_q"] @ basis
         except (HolonomError, ValueError):  # of matrices that are singular, or no numbers
             return np.full([tangent.basis.shape[1]] * 2, np.inf)
@@ -649,7 +651,7 @@ class _Search:
         zero they are much smaller than at a distance.
         """
         here = self._at(found.q, found.multipliers)
-        basis = self._tangent(here).basis
+        basis = self._tangent(here, found.q).basis
         rows, values, columns = np.linalg.svd(found.stiffness)
         flat = values <= found.least
         directions, pushed = basis @ columns.T[:, flat], basis @ rows[:, flat]

@@ -26,12 +26,14 @@ from ..program.rewriting import computing, with_factors
 from ..program.table import Table
 from ..program.table_numbers import TimeFunction
 from ..schema import Names
+from ..simulation.constraints.directions import cholesky
 from ..simulation.matrices import INDEXED, Matrix, Vector
 from ..source import Source
 from ..structs import entry
 
 ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
+NEAR = 2.0**-10  # of the largest coordinate, by which all are moved to find masses that vanish in a point
 FACTORS = 61  # different rounding errors at one point
 SIGNED = (Operation.SIGN, Operation.ABS)
 
@@ -227,6 +229,28 @@ class LinearEquations:
         return found | cut | {
             "reactions": np.concatenate(reactions, axis=1), "output_by_forces": np.concatenate(own_by_forces, axis=1)
         }  # fmt: skip
+
+    def masses_near(self, point: "Point", mass: Matrix) -> Vector:
+        """Return the diagonal of the mass matrix near a point, where it is singular there.
+
+        The mass of a body's e0 vanishes where the body has not turned, and that of e1 after half a turn.
+
+        Parameters
+        ----------
+        point : Point
+        mass : ndarray, shape (n, n)
+            The mass matrix there.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            May contain nan.
+        """
+        if cholesky(mass) is not None:
+            return mass.diagonal()
+        n, state = len(mass), point.state.copy()
+        state[:n] += NEAR * np.max(np.abs(state[:n]), initial=0.0)
+        return self.at(point._replace(state=state), [])["equation_by_a"].diagonal()
 
     def orientation(self, point: "Point") -> Vector:
         """Return the expressions whose signs no motion changes.

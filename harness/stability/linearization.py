@@ -432,7 +432,7 @@ def tangent_at(
     """
     independent = problem.independent
     here = _evaluated(problem, equations, point, independent)
-    tangent = _tangent(equations, here, nominal_of(problem).coordinates)
+    tangent = _tangent(equations, here, point)
     if tangent.rank < len(independent) and problem.obstruction is None:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=point.t)
     return here, tangent
@@ -450,9 +450,9 @@ def _evaluated(
     return here
 
 
-def _tangent(equations: LinearEquations, here: Mapping[str, Matrix], sizes: Vector) -> Tangent:
-    reactions = here["reactions"] if equations.servo else None
-    return Tangent(here["equation_by_a"], here["constraint_by_q"], sizes, reactions)
+def _tangent(equations: LinearEquations, here: Mapping[str, Matrix], point: Point) -> Tangent:
+    reactions, mass = here["reactions"] if equations.servo else None, here["equation_by_a"]
+    return Tangent(mass, here["constraint_by_q"], equations.masses_near(point, mass), reactions)
 
 
 def linearization_of(
@@ -612,7 +612,7 @@ def motion_at(problem: MotionProblem, equations: LinearEquations, t: float, stat
     none = np.zeros(len(equations.found) + equations.drives)
     at_rest = Point(t, state, np.zeros(n), multipliers, equations.controls_at(t), none)
     here = _evaluated(problem, equations, at_rest, rows)
-    tangent = _tangent(equations, here, nominal_of(problem).coordinates)
+    tangent = _tangent(equations, here, at_rest)
     if not tangent.determined:
         raise HolonomError(ErrorKind.NOT_LINEARIZED, time=t)
     accelerations, forces = tangent.solve(-here["equation"][:, None], -here["acceleration"][:, None])

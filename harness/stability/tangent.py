@@ -13,7 +13,6 @@ from ..simulation.constraints.directions import cholesky, not_positive_definite,
 from ..simulation.matrices import Matrix, Vector
 
 DEPENDENT = 1e-9  # singular values of the scaled constraints, relative to the largest, that count as zero
-LIGHT = 1e-5  # roots of masses in a singular A, in nominal sizes and by the largest, that may be rounding
 
 
 class Tangent:
@@ -29,8 +28,8 @@ class Tangent:
         A, which may be singular if the constraints make the system regular.
     jacobian : ndarray, shape (g, n)
         J, whose rows may depend on one another.
-    sizes : ndarray, shape (n,)
-        Nominal sizes of the coordinates.
+    masses : ndarray, shape (n,)
+        A_ii near the state. What vanishes in the state alone is rounding there.
     reactions : ndarray, shape (n, f), or None
         Directions of the forces that satisfy the constraints, if they are other than J^T: those of controls.
 
@@ -57,9 +56,9 @@ class Tangent:
     ([[0.5], [0.0]], (0,))
     """
 
-    def __init__(self, mass: Matrix, jacobian: Matrix, sizes: Vector, reactions: Matrix | None = None) -> None:
+    def __init__(self, mass: Matrix, jacobian: Matrix, masses: Vector, reactions: Matrix | None = None) -> None:
         self._mass, self._jacobian, self._reactions = mass, jacobian, reactions
-        self._roots = _roots(mass, sizes)
+        self._roots = or_one(np.sqrt(np.fmax(np.abs(mass.diagonal()), np.abs(masses))))
         self._lengths = or_one(np.linalg.norm(jacobian / self._roots, axis=1))
         _, values, directions = np.linalg.svd(self._directions)
         self.rank = int(np.count_nonzero(values > DEPENDENT * values.max(initial=0.0)))
@@ -172,19 +171,6 @@ class Tangent:
     @property
     def _directions(self) -> Matrix:
         return self._jacobian / self._roots / self._lengths[:, None]
-
-
-def _roots(mass: Matrix, sizes: Vector) -> Vector:
-    """Return the roots of the masses, those that may be rounding replaced.
-
-    In a singular A a small mass may be rounding, and no length to scale by. The nominal size of the coordinate makes
-    one, of the largest energy.
-    """
-    roots = np.sqrt(np.abs(mass.diagonal()))
-    largest = np.max(roots * sizes, initial=0.0)
-    if cholesky(mass) is None:
-        roots = np.where(roots * sizes < LIGHT * largest, largest / sizes, roots)
-    return or_one(roots)
 
 
 def _orthonormal(basis: Matrix, mass: Matrix) -> Matrix:

@@ -63,3 +63,27 @@ def test_a_singular_start_is_refused_without_warnings_of_numpy():
         warnings.simplefilter("error", RuntimeWarning)
         with pytest.raises(HolonomError):
             holonom.system(text).simulate()
+
+
+BODY = """b : rigid_body(1, [1, 3/2, 2], [x, y, z], [e0, e1, e2, e3])$
+system : holonomic_system(assembly(b))$
+scene : holonomic_scene(system, initial_state = [x = 0, y = 0, z = 0, e0 = {e0}, e1 = {e1}, e2 = {e2}, e3 = 0,
+  dot(e0) = {w}*e1, dot(e1) = -({w})*e0, dot(e2) = -1/12, dot(e3) = -1/6, dot(x) = 0, dot(y) = 0, dot(z) = 0],
+  time_span = [0, 10])$
+"""
+
+
+@pytest.mark.parametrize("turned", [("6.123e-17", "1", "0"), ("1", "1e-17", "0"), ("0", "1", "-2e-17")])
+def test_orientations_by_rounding_had_sizes_of_rounding_errors(turned):
+    """Steps and errors were relative to these: e had the length 7.6 after ten seconds, with exit status 0."""
+    at = dict(zip(("e0", "e1", "e2"), turned, strict=True))
+    exact = {name: f"{float(value):.0f}" for name, value in at.items()}
+    w = "-1/6" if exact["e1"] == "1" else "0"
+    rounded, true = (holonom.system(_with_values(each, w)).simulate(samples=2) for each in (at, exact))
+    for name in ("e0", "e1", "e2", "e3"):
+        assert rounded[name][-1] == pytest.approx(true[name][-1], abs=1e-10)
+
+
+def _with_values(at, w):
+    text = BODY.format(**at, w=w)
+    return text.replace("*e1", f"*({at['e1']})").replace("*e0", f"*({at['e0']})")

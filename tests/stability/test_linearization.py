@@ -518,3 +518,23 @@ def test_a_half_turn_by_rounding_was_a_singular_configuration(e):
     linear = holonom.system(INVERTED).with_settings(e=e).linearize()
     assert sorted(linear.eigenvalues.real) == pytest.approx([-(12**0.5), 12**0.5])  # m g l/(J + m l^2)
     assert linear.basis[1:4, 0] == pytest.approx([0.3**0.5, 0, 0.3**0.5], abs=1e-7)
+
+
+LIGHT = """heavy : rigid_body(10^6, [10^7, 10^7, 10^7], [x0, y0, z0], [e00, e01, e02, e03])$
+light : rigid_body(1/10^6, [1, 1, 1]/10^13, [x1, y1, z1], [e10, e11, e12, e13])$
+system : holonomic_system(assembly(heavy, light, uniform_gravity(981/100, heavy, light),
+  spherical_joint(marker(heavy, [0, 0, 10]), [0, 0, 0]),
+  spherical_joint(marker(light, [0, 0, 1/1000]), marker(heavy, [0, 0, -10]))))$
+scene : holonomic_scene(system, initial_guess = [x0 = 0, y0 = 0, z0 = -10, x1 = 0, y1 = 0, z1 = -20],
+  initial_state = [e00 = 1, e01 = 0, e02 = 0, e03 = 0, e10 = 1, e11 = 0, e12 = 0, e13 = 0, dot(e01) = 0, dot(e02) = 0,
+    dot(e03) = 0, dot(e11) = 0, dot(e12) = 0, dot(e13) = 0], time_span = [0, 1])$
+"""
+
+
+def test_a_light_body_on_a_heavy_one_swings_by_itself():
+    """Of m g l/(J + m l^2), but for their ratio of 10^-12; the spins have none."""
+    frequencies = np.sort(np.abs(holonom.system(LIGHT).linearize().eigenvalues.imag))
+    alone = [(mass * 9.81 * length / (inertia + mass * length**2)) ** 0.5
+             for mass, length, inertia in ((1e6, 10, 1e7), (1e-6, 1e-3, 1e-13))]  # fmt: skip
+    assert frequencies[4:] == pytest.approx([alone[0]] * 4 + [alone[1]] * 4, rel=1e-9)
+    assert frequencies[:4] == pytest.approx(0, abs=0.1)
