@@ -20,6 +20,7 @@ from .taylor import Polynomial, Taylor
 
 State = Mapping[str, mp.mpf]
 VALUE, RATE = Taylor(0), Taylor(1)
+FLAT = Taylor(7)  # of the law, whose parts may meet at the initial time by a function with vanishing derivatives
 START_DIGITS = 45  # to which constraints hold at an initial state
 NEWTON_STEPS, HALVINGS = 60, 20
 CONVERGED = 20  # digits of a root that is only compared by its distance
@@ -59,26 +60,33 @@ def values_of_start(
         yield ComparedValue(f"initial value of {name}", start[name], start[name] if near else given, abs(given))
     # forces may have no value at the initial time
     needed = motion.tape.needed_for([*motion.constraints, *motion.outputs])
-    values = motion.values(RATE, _curve(motion, start), needed)
-    sizes, coordinates = motion.tape.sizes(RATE, values, needed), set(motion.system.coordinates)
+    curve = _curve(motion, start)
+    values = motion.values(RATE, curve, needed)
+    sizes = motion.tape.sizes(RATE, values, needed)
     for what, places in (("constraint", motion.constraints), ("servo-constraint", motion.outputs)):
         for beta, place in enumerate(places, 1):
             slopes = motion.tape.gradient(RATE, values, {place: (mp.one,)})
             for order, prefix in enumerate(("", "derivative of ")):
                 value, size = ((*each[place], mp.zero)[order] for each in (values, sizes))
-                size += mp.fsum(abs(x) for q in slopes.keys() & coordinates for x in _changes(slopes, start, q, order))
+                changes = (_changes(motion, slopes, start, curve, name)[order] for name in slopes)
+                size += mp.fsum(abs(x) for each in changes for x in each)
                 yield ComparedValue(f"{prefix}{what} {beta} at the initial time", value, mp.zero, size)
 
 
-def _changes(slopes: Mapping[str, Polynomial], start: State, q: str, order: int) -> list[mp.mpf]:
-    """Return changes of a constraint, or of its derivative, by relative changes.
+def _changes(
+    motion: DescribedMotion, slopes: Mapping[str, Polynomial], start: State, curve: Mapping[str, Polynomial], name: str
+) -> tuple[list[mp.mpf], list[mp.mpf]]:
+    """Return changes of a constraint, and of its derivative, by relative changes.
 
-    A coordinate and its velocity change.
+    A coordinate and its velocity change, or the time and with it the controls.
     """
-    slope, slope_rate = (*slopes.get(q, ()), mp.zero, mp.zero)[:2]
-    if order == 0:
-        return [slope * start.get(q, mp.zero)]
-    return [slope * start.get(f"dot({q})", mp.zero), slope_rate * start.get(q, mp.zero)]
+    slope, slope_rate = (*slopes[name], mp.zero)[:2]
+    if name in motion.system.coordinates:
+        x, rate = start.get(name, mp.zero), start.get(f"dot({name})", mp.zero)
+        return [slope * x], [slope * rate, slope_rate * x]
+    _, rate, half = (*curve.get(name, ()), mp.zero, mp.zero, mp.zero)[:3]
+    x, bend = start["t"] * rate, 2 * start["t"] * half
+    return [slope * x], [slope * bend, slope_rate * x]
 
 
 def nearer_start(motion: DescribedMotion, start: State, masses: State | None = None) -> str:
@@ -113,7 +121,7 @@ def nearer_start(motion: DescribedMotion, start: State, masses: State | None = N
 
 
 def _curve(motion: DescribedMotion, state: State) -> dict[str, Polynomial]:
-    law = motion.law.at(Taylor(2), state["t"], motion.parameters())
+    law = motion.law.at(FLAT, state["t"], motion.parameters())
     places = {q: (state[q], rate) for q in state if (rate := state.get(f"dot({q})")) is not None}
     forcing = dict.fromkeys(
         motion.system.controls if motion.scene.servo_trees else (), (mp.zero,)

@@ -4,6 +4,7 @@ import dataclasses
 
 import pytest
 
+import holonom
 from holonom.crosscheck.check import check_record
 from holonom.crosscheck.report import Verdict
 from holonom.description import Description
@@ -252,6 +253,15 @@ def test_special_functions_that_vanish_at_the_start_disagreed(write_scene):
     scene = write_scene(LIFTED.replace("LAW", "gamma(2 + t) + jacobi_sn(t, 1/3)"))
     checked = check_record(derived_record(scene), describe(scene))
     assert {each.verdict for each in checked.verdicts if each.number == "12"} == {Verdict.AGREES}
+
+
+@pytest.mark.parametrize(
+    ("law", "start"), [("max(0, t^3)", "0"), ("if sin(t) - t < 0 then t^2 else 0", "0"), ("(t - 1/3)^2", "1/3")]
+)
+def test_laws_that_vanish_at_the_start_were_errors_and_disagreements(law, start, write_scene):
+    """The sign of t^3 was not found by two derivatives, and 1/3 is a decimal of 70 digits."""
+    text = LIFTED.replace("y - u*x", "y - u").replace("LAW", law).replace("[0, 3]", f"[{start}, 3]")
+    assert not holonom.load(write_scene(text)).check().disagreements
 
 
 def test_orientations_were_a_disagreement(write_scene):

@@ -87,6 +87,14 @@ def test_multipliers_in_forces_without_a_sign_were_an_internal_error(force, velo
     assert motion["dot(x)"][-1] == pytest.approx(velocity, abs=1e-12)
 
 
+@pytest.mark.parametrize("size", ["max(0, -lambda1)", "-min(0, lambda1)", "(abs(lambda1) - lambda1)/2"])
+@pytest.mark.parametrize(("side", "velocity"), [("y - u", 2), ("u - y", 0.5)])
+def test_friction_of_one_sign_of_a_reaction_was_an_error(size, side, velocity):
+    scene = of_text(BLOCK.replace("FORCE", f"-mu*{size}*signum(dot(x))").replace("LAW", "0").replace("END", "1/2")
+                    .replace("y - u", side))  # fmt: skip
+    assert scene.simulate(samples=2)["dot(x)"][-1] == pytest.approx(velocity)
+
+
 def test_no_friction_was_an_internal_error():
     scene = holonom.system(f'load("holonom.mac")$ {BLOCK}'.replace("mu = 3/10", "mu = 0").replace("LAW", "0")
                            .replace("FORCE", "-mu*abs(lambda1)*signum(dot(x)) + 1").replace("END", "2"))  # fmt: skip
