@@ -35,8 +35,8 @@ AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
-PROBE = 2.0**-10  # share of the largest coordinate by which all are moved, to find masses that vanish at the start
-VANISHING = 1e-12  # of the mass there: one that vanishes at the start
+PROBE = 2.0**-10  # share of the largest coordinate by which all are moved, to find masses that vanish initially
+VANISHING = 1e-12  # of the mass there: one that vanishes initially
 NONE = 1e-13  # of the largest coordinate: another one that is zero but for rounding, if a mass vanishes
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
 
@@ -269,9 +269,9 @@ def _completed(problem: MotionProblem, span: float) -> Nominal:
 
 
 def _without_rounding(masses: Callable[[Matrix], Matrix], state: Matrix) -> tuple[Matrix, Matrix]:
-    """Return masses and a state, shapes (n, 1) and (2n, 1), zero where they are rounding.
+    """Return masses, shape (n, 1), and the state, zero where they are rounding.
 
-    A mass may vanish in the state alone, as of a body's e0 where it has not turned. Coordinates beside it may be zero
+    A mass may vanish in the state alone, as of a body's e0 where it has not turned. Then others may be zero
     by rounding: their sizes would be tolerances that are too fine, and divisors.
     """
     q, rates = np.split(state, 2)

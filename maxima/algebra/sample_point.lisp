@@ -364,9 +364,18 @@ not get there. constraints: list of terms; jacobian: their gradients by the coor
 
 (defun $shifted_point (point shifts)
   "The point, each  name = shift  moved by this."
+  (point-with point shifts #'(lambda (old shift) (+ old shift))))
+
+(defun $point_at (point equations)
+  "The point with  name = rational number."
+  (point-with point equations #'(lambda (old new) (declare (ignore old)) new)))
+
+(defun point-with (point equations combine)
   (let ((moved (copied-point point)))
-    (dolist (shift (cdr shifts) moved)
-      (incf (gethash (second shift) (sample-point-symbols moved)) (rational-of (third shift))))))
+    (dolist (e (cdr equations) moved)
+      (let ((symbols (sample-point-symbols moved)))
+        (setf (gethash (second e) symbols)
+              (funcall combine (gethash (second e) symbols) (rational-of (third e))))))))
 
 (defun copied-point (point) (converted-point point #'identity))
 

@@ -95,6 +95,14 @@ def test_friction_of_one_sign_of_a_reaction_was_an_error(size, side, velocity):
     assert scene.simulate(samples=2)["dot(x)"][-1] == pytest.approx(velocity)
 
 
+@pytest.mark.parametrize("size", ["mu*abs(lambda1) + 1", "mu*x^2*abs(lambda1) + 1", "mu*lambda1 + 1"])
+def test_a_coefficient_that_vanishes_was_a_divisor(size):
+    """Of the other part of the friction, which was a paradox at t = 0."""
+    found = block(f"-({size})*signum(dot(x))").simulate(samples=2, mu=0)
+    assert found["dot(x)"][-1] == pytest.approx(1.5)
+    assert block(f"-({size})*signum(dot(x))", end=4).simulate(samples=2)["dot(x)"][-1] == pytest.approx(0, abs=1e-12)
+
+
 def test_no_friction_was_an_internal_error():
     scene = holonom.system(f'load("holonom.mac")$ {BLOCK}'.replace("mu = 3/10", "mu = 0").replace("LAW", "0")
                            .replace("FORCE", "-mu*abs(lambda1)*signum(dot(x)) + 1").replace("END", "2"))  # fmt: skip
