@@ -606,6 +606,26 @@ scene : holonomic_scene(system, control_law = [u = if sin(t + 4) > 0 then 1 else
     assert not scene.check().disagreements
 
 
+@pytest.mark.parametrize(
+    ("force", "ahead", "behind"),
+    [
+        ("max(signum(dot(x)), 1/5)", 1, 1 / 5),
+        ("abs(signum(dot(x)) + 1/2)", 3 / 2, 1 / 2),
+        ("abs(signum(dot(x)))", 1, 1),
+        ("signum(dot(x))^2 + signum(signum(dot(x)) + 1/3)", 2, 0),
+    ],
+)
+def test_functions_of_a_sign_slide_between_their_values_on_both_sides(force, ahead, behind):
+    """Filippov's shares are 2/3 and 1/3 at rest. The forces were these functions of the amount 1/3."""
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2)/2,
+  forces = [-3*signum(dot(x)) + 1, {force}])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 2, z = 0, dot(z) = 0], time_span = [0, 3])$""")
+    found = scene.simulate(samples=2)
+    assert found["dot(x)"][-1] == pytest.approx(0, abs=1e-12)
+    assert found["dot(z)"][-1] == pytest.approx(ahead + 2 * (2 * ahead + behind) / 3)
+
+
 def test_function_of_the_velocities_may_jump_with_an_impulse():
     """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
     scene = holonom.system("""
