@@ -159,7 +159,8 @@ def _with_names(tree: Tree) -> Tree:
             return tree
 
 
-SWITCHING = ("Abs", "Sign", "Max", "Min", "UnitStep", "HalfStep", "Which", "Table")
+SIGNED = ("Abs", "Sign", "Max", "Min", "UnitStep", "HalfStep", "Which")
+SWITCHING = (*SIGNED, "Table")
 
 
 def is_switched(tree: Tree, heads: Sequence[str] = SWITCHING) -> bool:

@@ -26,7 +26,7 @@ from .described_motion import DescribedMotion
 from .evaluation import Steps
 from .independent import IndependentEquations
 from .irregular_point import IrregularPoint
-from .law import is_switched
+from .law import SIGNED, is_switched
 from .polynomial_equilibria import count_real_solutions, read_exact
 from .report import CheckResult, Verdict
 from .system import described_system, dotted, exact, gradient
@@ -38,7 +38,6 @@ LARGER = 100  # rounding errors, in terms of that effect
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
 EXACT_DIGITS = 60  # in which exact values are put into the equations
 SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
-PARTED = "Sign", "Abs", "UnitStep", "HalfStep", "Which", "Max", "Min"  # the same in a law; tables are smooth enough
 NEARBY, NEARBY_DIGITS = mp.mpf("1e-60"), 150  # displacement to a limit, and digits there
 MOST_ORIENTATIONS = 2  # with which solutions are counted: each is an unknown more
 ENERGY = sp.Symbol("energy", real=True)
@@ -257,7 +256,7 @@ class DescribedEquations:
     def switches(self) -> bool:
         """True if signs change the equations or the laws."""
         laws = self.motion.scene.control_law.trees.values()
-        return any(each.has(*SWITCHING) for each in self._smooth) or any(is_switched(law, PARTED) for law in laws)
+        return any(each.has(*SWITCHING) for each in self._smooth) or any(is_switched(law, SIGNED) for law in laws)
 
     def _arranged(self, numbers: Sequence[Any]) -> dict[str, Matrix]:
         ends = np.cumsum(list(self._shapes.values()))[:-1]

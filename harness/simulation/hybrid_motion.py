@@ -625,10 +625,11 @@ class HybridMotion:
             moved[n:] += factored_constraints(new.mass, new.jacobian).accelerations(kick, new.residual_rate)
         moved = after.settled(t, moved)
         continuous = self.nominal.share(as_floats(moved - state), floats) <= CONTINUOUS
+        impulse = new.mass @ as_floats(moved - state)[n:] - kick
         if self.problem.servo.constraints and not continuous:
-            self._require_reactions(new, as_floats(moved - state)[n:], kick, sign, t)
+            self._require_reactions(new, impulse, sign, t)
         if self.problem.reacting and not continuous:
-            self._require_no_friction(new, as_floats(moved - state)[n:], kick, sign, t)
+            self._require_no_friction(new, impulse, sign, t)
         if sign.by is not DependsOn.TIME:
             jump = abs(float(after.energy_at(t, state) - before.energy_at(t, state)))
             if not continuous:
@@ -642,10 +643,9 @@ class HybridMotion:
                 self._reject(t, translatable("the energy jumps as %(sign)s changes its sign", sign=sign.of))
         return moved
 
-    def _require_reactions(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
+    def _require_reactions(self, at: Matrices, impulse: Vector, sign: Sign, t: Any) -> None:
         """Reject a change of velocities that needs an impulse by servo-constraints."""
         reactions = at.jacobian[: len(self.problem.reactions)].T
-        impulse = at.mass @ change - kick
         left = impulse - reactions @ np.linalg.lstsq(reactions, impulse)[0]
         if np.max(np.abs(left)) > CONTINUOUS * np.max(np.abs(impulse)):
             self._reject(
@@ -655,9 +655,8 @@ class HybridMotion:
                 ),
             )
 
-    def _require_no_friction(self, at: Matrices, change: Vector, kick: Vector, sign: Sign, t: Any) -> None:
+    def _require_no_friction(self, at: Matrices, impulse: Vector, sign: Sign, t: Any) -> None:
         """Reject a change of velocities by an impulse of multipliers that forces contain."""
-        impulse = at.mass @ change - kick
         shares = at.jacobian.T * np.linalg.lstsq(at.jacobian.T, impulse)[0]
         reacting = [name in self.problem.reacting for name in self.problem.multipliers]
         if np.max(np.abs(shares[:, reacting])) > CONTINUOUS * np.max(np.abs(impulse)):

@@ -35,7 +35,7 @@ AT_ONCE = 64  # motions that are looked at together
 COARSE = 1e3  # power in which tolerances change: what is compiled with one serves many motions
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
-PROBE = 2.0**-10  # share of the largest coordinate by which all are moved, to find masses that vanish initially
+PROBE = 2.0**-10  # share of the largest coordinate by which all are moved to find masses that vanish
 VANISHING = 1e-12  # of the mass there: one that vanishes initially
 NONE = 1e-13  # of the largest coordinate: another one that is zero but for rounding, if a mass vanishes
 NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
@@ -274,12 +274,28 @@ def _without_rounding(masses: Callable[[Matrix], Matrix], state: Matrix) -> tupl
     A mass may vanish in the state alone, as of a body's e0 where it has not turned. Then others may be zero
     by rounding: their sizes would be tolerances that are too fine, and divisors.
     """
+    here = masses(state)
+    here = np.where(here < VANISHING * masses(beside(state)), 0.0, here)
+    if here.all():
+        return here, state
     q, rates = np.split(state, 2)
-    largest, here = np.max(np.abs(q), initial=0.0), masses(state)
-    here = np.where(here < VANISHING * masses(np.concatenate([q + PROBE * largest, rates])), 0.0, here)
-    if not here.all():
-        q = np.where(np.abs(q) <= NONE * largest, 0.0, q)
-    return here, np.concatenate([q, rates])
+    return here, np.concatenate([np.where(np.abs(q) <= NONE * np.max(np.abs(q)), 0.0, q), rates])
+
+
+def beside(state: Matrix) -> Matrix:
+    """Return a state with moved coordinates, to find masses that vanish in one alone.
+
+    Parameters
+    ----------
+    state : ndarray, shape (2n,) or (2n, k)
+
+    Returns
+    -------
+    ndarray
+        Of the same shape.
+    """
+    q, rates = np.split(state, 2)
+    return np.concatenate([q + PROBE * np.max(np.abs(q), initial=0.0), rates])
 
 
 def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> Nominal:

@@ -28,12 +28,12 @@ from ..program.table_numbers import TimeFunction
 from ..schema import Names
 from ..simulation.constraints.directions import cholesky
 from ..simulation.matrices import INDEXED, Matrix, Vector
+from ..simulation.nominal import beside
 from ..source import Source
 from ..structs import entry
 
 ROWS = ("equation", "constraint", "rate", "acceleration", "output")  # r, f, Df, DDf, outputs
 GROUPS = ("q", "v", "a", "u", "du", "ddu")
-NEAR = 2.0**-10  # of the largest coordinate, by which all are moved to find masses that vanish in a point
 FACTORS = 61  # different rounding errors at one point
 SIGNED = (Operation.SIGN, Operation.ABS)
 
@@ -248,9 +248,7 @@ class LinearEquations:
         """
         if cholesky(mass) is not None:
             return mass.diagonal()
-        n, state = len(mass), point.state.copy()
-        state[:n] += NEAR * np.max(np.abs(state[:n]), initial=0.0)
-        return self.at(point._replace(state=state), [])["equation_by_a"].diagonal()
+        return self.at(point._replace(state=beside(point.state)), [])["equation_by_a"].diagonal()
 
     def orientation(self, point: "Point") -> Vector:
         """Return the expressions whose signs no motion changes.

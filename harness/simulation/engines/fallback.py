@@ -139,9 +139,10 @@ class FallbackEngine:
         obstruction, request = self._task.problem.obstruction, self._task.request
         chosen = request.engine if not self._automatic else DEFAULT if obstruction is None else FALLBACK
         if self._task.problem.reacting and (obstruction is not None or chosen == FALLBACK):
-            needed = translatable("and the robust engine is needed: %(reason)s", reason=obstruction or "")
-            refusing = translatable("which the robust engine does not take")
-            raise HolonomError(ErrorKind.REACTING, detail=needed if obstruction else refusing)
+            detail = translatable("which the robust engine does not take")
+            if obstruction is not None:
+                detail = translatable("and the robust engine is needed: %(reason)s", reason=obstruction)
+            raise HolonomError(ErrorKind.REACTING, detail=detail)
         if obstruction is not None and engine_class(chosen).fixed_pivots:
             raise HolonomError(ErrorKind.NO_PIVOTS, detail=obstruction)
         first = engine_class(chosen)(self._task)
