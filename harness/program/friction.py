@@ -125,17 +125,22 @@ def affine_terms(
     given = {name: number for name, number in numbers_in(pattern).items() if name not in unknown}
     program = with_sizes(computing(problem.switching, wanted), pattern, zeros)
     program = with_numbers(program, given)
-    both = differentiated(program, {name: {name: ONE} for name in unknown})
+    both = _with_slopes(program, unknown)
+    return None if both is None else with_numbers(both, dict.fromkeys(unknown, ZERO))
+
+
+def _with_slopes(program: Program, names: Collection[str]) -> Program | None:
+    """Return a program with the derivatives by some inputs, or None if it is not affine in them."""
+    both = differentiated(program, {name: {name: ONE} for name in names})
     slopes = computing(both, both.outputs.keys() - program.outputs.keys())
-    if not names_used(slopes).isdisjoint(unknown):
-        return None
-    return with_numbers(both, dict.fromkeys(unknown, ZERO))
+    return both if names_used(slopes).isdisjoint(names) else None
 
 
 def slides(problem: MotionProblem, name: str) -> bool:
     """Return True if a motion can slide on a switching surface with a drive.
 
-    It cannot if multipliers stand in its forces in several directions.
+    It cannot if multipliers stand in its forces in several directions, or if a force without them is not affine in
+    the sign.
 
     Parameters
     ----------
@@ -149,6 +154,10 @@ def slides(problem: MotionProblem, name: str) -> bool:
     bool
     """
     ones = {sign.name: 1 for sign in problem.signs}
+    if f"size[{problem.places[name]}]" not in problem.switching.outputs:
+        forces = computing(problem.matrices, {output for output in problem.matrices.outputs if output.startswith("h[")})
+        if _with_slopes(with_sizes(forces, ones, {name}), {name}) is None:
+            return False
     return affine_terms(problem, ones, {name}, unknown_amounts(problem, {name})) is not None
 
 

@@ -626,6 +626,16 @@ scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 2, z = 0, dot(z
     assert found["dot(z)"][-1] == pytest.approx(ahead + 2 * (2 * ahead + behind) / 3)
 
 
+def test_a_force_that_is_not_linear_in_the_friction_of_another_was_that_of_the_amount_in_between():
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2)/2,
+  forces = [t/10 - signum(dot(x)), cos(%pi/3*signum(dot(x)) + t)])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1, z = 0, dot(z) = 0])$""")
+    assert scene.simulate(until=1, samples=2)["dot(z)"][-1] == pytest.approx(math.sin(math.pi / 3 + 1) - 3**0.5 / 2)
+    with failing(ErrorKind.NO_WAY_ON):
+        scene.simulate(until=2)
+
+
 def test_function_of_the_velocities_may_jump_with_an_impulse():
     """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
     scene = holonom.system("""
