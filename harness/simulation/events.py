@@ -122,9 +122,12 @@ class Events(SignedFunctions):
     def __init__(self, names: Sequence[str], evaluate: Values, precision: Precision, span: float) -> None:
         super().__init__(precision, span)
         self._names, self._evaluate = names, evaluate
+        self._end: Any = None  # of the last step
 
     def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
         """Return the first crossing within a step.
+
+        An expression that a new mode keeps at zero, as dry friction a speed, crosses zero where the mode begins.
 
         Parameters
         ----------
@@ -142,6 +145,10 @@ class Events(SignedFunctions):
         HolonomError
             An expression has no real, finite value before.
         """
+        entered, self._end = step.start != self._end, step.end
+        stopped = self._at_zero(step, sides) if entered and sides else []
+        if stopped:
+            return Crossing(step.start, stopped[0], -sides[stopped[0]])
         self._rows, all_seen = self._with_sides(sides), sides.keys() >= set(self._names)
         if all_seen and self._is_clear(step):
             return None
@@ -158,6 +165,14 @@ class Events(SignedFunctions):
                 return found
             self._rows = all_rows
         return None
+
+    def _at_zero(self, step: Step, sides: Mapping[str, int]) -> list[str]:
+        """Return the expressions that had a sign and have none in a whole step."""
+        self._rows = [(name, -1, 1) for name in self._names]
+        _, values = self._samples(step, NODES)
+        least = self._sizes_in(step)[:, None] * max(ZERO, DRIFT * step.mode.engine.tol)
+        at_zero = (np.abs(values) <= least).all(axis=1)
+        return [name for name, zero in zip(self._names, at_zero, strict=True) if zero and name in sides]
 
     def _sizes_in(self, step: Step) -> Numbers:
         """Return the sizes of expressions in a step, or of their changes."""

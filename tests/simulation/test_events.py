@@ -116,6 +116,20 @@ def test_a_switched_motion_ends_in_a_later_part():
     assert [switching.t for switching in report.switchings] == [1]
 
 
+@pytest.mark.parametrize("engine", ["auto", "robust", "runge-kutta"])
+@pytest.mark.parametrize("belt", ["0", "1/2 + t/4"])
+def test_a_speed_that_friction_stops_ended_no_motion(belt, engine, c_compiler):
+    """Braked by 1, the block has the speed of the belt at 1 - t = 0 or 1/2 + t/4."""
+    scene = holonom.system(f"""
+        system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+          forces = [-signum(dot(x) - ({belt}))])$
+        stopped : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1], time_span = [0, 5],
+          until = [dot(x) - ({belt}), x - 3])$""")
+    report = scene.simulate(samples=2, engine=engine).report
+    assert report.ending.crossed == report.ending.of[0]
+    assert float(report.t) == pytest.approx(1 if belt == "0" else 0.4, rel=1e-9)
+
+
 OSCILLATORS = """
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   potential_energy = x^2/2 + y^2)$
