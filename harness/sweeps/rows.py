@@ -220,11 +220,12 @@ class RowMaker:
         values = rows.values[:, there]
         start = self._batch_matrices(self._start, states, values), states
         nominal = nominal_at_each(self._problem, start[0].mass, states, values, self._end - self._start)
-        small = (nominal.state * COARSE < nominal_of(self._common).state[:, None]).any(axis=0)
-        if small.any():
-            rest = there[~small]
-            left = self._together(rows, rest, states[:, ~small], stops) if len(rest) else rest
-            return np.concatenate([there[small], left])
+        apart = (nominal.state * COARSE < nominal_of(self._common).state[:, None]).any(axis=0)
+        apart |= (np.diagonal(start[0].mass) < 0).any(axis=-1)
+        if apart.any():
+            rest = there[~apart]
+            left = self._together(rows, rest, states[:, ~apart], stops) if len(rest) else rest
+            return np.concatenate([there[apart], left])
         stops = [t for t in stops if t < self._end]
         ends, ended = self._ends(states, values, nominal, stops)
         times = sorted({*self._asked, *stops})

@@ -238,8 +238,8 @@ def peak(samples: np.ndarray) -> float:
 
 @pytest.mark.long
 def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
-    found = columns(rows_of(scenes / "hanging.mac", "final", "l=0:2:5", "m=0:1:2").table(0, 10))
-    expected = np.where(found["l"] < 0.5, "no start", np.where(found["m"] == 0, "broken off", "ok"))
+    found = columns(rows_of(scenes / "hanging.mac", "final", "l=0:2:5", "m=-1:1:3").table(0, 15))
+    expected = np.where(found["l"] < 0.5, "no start", np.where(found["m"] <= 0, "broken off", "ok"))
     assert (found["status"] == expected).all()
     scene = holonom.load(scenes / "hanging.mac")
     for row in np.flatnonzero(expected == "ok"):
