@@ -130,7 +130,7 @@ def affine_terms(
 
 
 def _with_slopes(program: Program, names: Collection[str]) -> Program | None:
-    """Return a program with the derivatives by some inputs, or None if it is not affine in them."""
+    """Return a program with derivatives by inputs, or None if it is not affine."""
     both = differentiated(program, {name: {name: ONE} for name in names})
     slopes = computing(both, both.outputs.keys() - program.outputs.keys())
     return both if names_used(slopes).isdisjoint(names) else None
