@@ -62,7 +62,9 @@
 ;;; ---- decimals ------------------------------------------------------------------------------
 
 ;; Maxima reads a decimal as the floating-point number nearest to it, which is remembered here. Where two decimals have
-;; the same, the second one is read as a fraction, as is a bigfloat with more digits than fpprec.
+;; the same, the second one is read as a fraction, as are a bigfloat with more digits than fpprec and what is too large
+;; or too small for a floating-point number, up to this power of ten.
+(defconstant largest-power 10000)
 (defvar *decimals* (make-hash-table) "floating-point number -> the decimal that it was read from")
 
 (unless (get 'make-number 'with-decimals)
@@ -75,11 +77,12 @@
   "The number as it is read, or as a fraction. parts: lists of characters: digits, point, digits, marker, sign, digits."
   (destructuring-bind (whole &optional point digits marker sign power) parts
     (let ((power (if power (parse-integer (coerce (append sign power) 'string)) 0)) (significant (append whole digits)))
-      (if (and point significant (not (eql number 0d0)) (< (abs power) 400))
+      (if (and point (find #\0 significant :test-not #'eql) (< (abs power) largest-power))
           (let ((decimal (* (parse-integer (coerce significant 'string)) (expt 10 (- power (length digits))))))
             (if (if (equal marker '(#\B))
                     (<= (length significant) $fpprec)
-                    (eql decimal (or (gethash number *decimals*) (setf (gethash number *decimals*) decimal))))
+                    (and (<= least-positive-normalized-double-float number most-positive-double-float)
+                         (eql decimal (or (gethash number *decimals*) (setf (gethash number *decimals*) decimal)))))
                 number
                 (maxima-number decimal)))
           number))))
