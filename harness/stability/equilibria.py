@@ -39,7 +39,7 @@ from ..simulation.nominal import nominal_of
 from ..structs import Documented, computed, entry, with_attributes
 from .equivalence import Equivalence
 from .linear_equations import EnergyChange, LinearEquations, Point
-from .linearization import Linearization, linearized, perturbed_eigenvalues
+from .linearization import Linearization, linearization_of, perturbed_eigenvalues, tangent_at
 from .repetition import reversible, whole_turns
 from .smoothness import is_smooth, with_limits
 from .tangent import Tangent
@@ -541,12 +541,14 @@ class _Search:
         return self._equations.at(self._point(q, multipliers), range(len(multipliers)))
 
     def _equilibrium(self, name: str, found: "_Solution") -> Equilibrium:
-        linear = linearized(found.problem, self._given, self._point(found.q, found.multipliers))
+        point = self._point(found.q, found.multipliers)
+        here, tangent = tangent_at(found.problem, self._given, point)
+        linear = linearization_of(found.problem, self._given, point, None, here, tangent)
         return Equilibrium(
             name,
             dict(zip(self._equations.coordinates, map(float, found.q), strict=True)),
             dict(zip(self._equations.multipliers, map(float, found.multipliers), strict=True)),
-            _stability(found, linear.A, self._equations),
+            _stability(found, linear.A, _norm_of_terms(here["equation_by_v"], tangent.basis), self._equations),
             found.isolated,
             linear,
         )
@@ -570,10 +572,9 @@ class _Search:
         if shrunk or tangent.rank < self._rank or tangent.least < NEARLY_SINGULAR:
             return None
         changes = here["equation_by_q"]
-        terms = np.abs(tangent.basis).T @ np.abs(changes) @ np.abs(tangent.basis)
-        bound = np.linalg.norm(terms, 2) if terms.size else 0.0
         stiffness = tangent.basis.T @ changes @ tangent.basis
-        return stiffness, float(bound), self._error(q, multipliers, tangent, stiffness)
+        bound = _norm_of_terms(changes, tangent.basis)
+        return stiffness, bound, self._error(q, multipliers, tangent, stiffness)
 
     def _tangent(self, here: Mapping[str, Matrix], q: Vector) -> Tangent:
         mass = here["equation_by_a"]
@@ -801,11 +802,21 @@ def _same(one: Vector, other: Vector) -> bool:
     return bool(np.all(np.abs(one - other) <= SAME * np.max(np.abs([one, other]), initial=0.0)))
 
 
-def _stability(found: _Solution, A: Matrix, equations: LinearEquations) -> Stability:
-    """Decide the stability by the eigenvalues of A or the second variation."""
-    entries = np.zeros_like(A)
-    entries[len(found.stiffness) :, : len(found.stiffness)] = found.error
-    parts, certain = certain_distances(A, PERTURBED if found.isolated else PERTURBED_FAMILY, np.real, entries)
+def _norm_of_terms(matrix: Matrix, basis: Matrix) -> float:
+    """Return the norm that a matrix has along a basis if no terms cancel."""
+    terms = np.abs(basis).T @ np.abs(matrix) @ np.abs(basis)
+    return float(np.linalg.norm(terms, 2)) if terms.size else 0.0
+
+
+def _stability(found: _Solution, A: Matrix, damping: float, equations: LinearEquations) -> Stability:
+    """Decide the stability by the eigenvalues of A or the second variation.
+
+    The damping is that of all forces, which may cancel along the manifold.
+    """
+    perturbed = PERTURBED if found.isolated else PERTURBED_FAMILY
+    m, entries = len(found.stiffness), np.zeros_like(A)
+    entries[m:, :m], entries[m:, m:] = found.error, perturbed * damping
+    parts, certain = certain_distances(A, perturbed, np.real, entries)
     if len(A) and np.all(certain & (parts < 0)):
         return Stability.ASYMPTOTIC
     minimum = np.all(np.linalg.eigvalsh((found.stiffness + found.stiffness.T) / 2) > found.least)

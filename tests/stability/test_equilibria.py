@@ -164,6 +164,16 @@ def test_stability(details, stability):
     assert found.found[0].coordinates == pytest.approx({"x": 0, "y": 0}, abs=1e-3)
 
 
+@pytest.mark.parametrize("angle", ["1/10", "4/5", "1", "7/5"])
+def test_rounding_errors_of_magnetic_forces_across_a_wire_were_negative_damping(angle):
+    """A bead on a straight wire moves uniformly in any magnetic field."""
+    found = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  forces = [3*dot(y), -3*dot(x)], constraints = [x*cos({angle}) + y*sin({angle}) - 4/5])$
+scene : holonomic_scene(system, initial_guess = [x = 1, y = 1, dot(x) = 0, dot(y) = 0])$""").equilibria(starts=20)
+    assert {each.stability for each in found} == {Stability.UNDECIDED}
+
+
 @pytest.mark.parametrize(("load", "stability"), [(0.8, Stability.UNDECIDED), (3.2, Stability.UNSTABLE)])
 def test_a_follower_force_makes_a_double_pendulum_flutter(load, stability):
     """Ziegler's pendulum with equal masses at the joint and the tip, m = l = k = 1: flutter from P = 7/2 - sqrt(2)."""
