@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import sympy as sp
@@ -18,6 +18,7 @@ from mpmath import mp
 from ..description import DescribedScene
 from ..language import translatable
 from ..record import Relation, Scene
+from .behind import form_behind
 from .derivation import CheckedDerivation
 from .digits import WORKING_DIGITS
 from .evaluation import Steps
@@ -62,6 +63,30 @@ class CheckedScene:
     def system(self) -> MechanicalSystem:
         """The system, with the effects that the scene calls for."""
         return self.derivation.system
+
+    @cached_property
+    def beginning(self) -> IndependentEquations:
+        """The same evaluation with the signs that functions of the time have after t0."""
+        return self._beginning(self.derivation.known)
+
+    @cached_property
+    def stated(self) -> IndependentEquations:
+        """The beginning with all constraints of the system."""
+        return self._beginning(self.derivation.stated)
+
+    def _beginning(self, equations: IndependentEquations) -> IndependentEquations:
+        def formed(expression: sp.Expr) -> sp.Expr:
+            return form_behind(expression, self.control_law, self.system.time, self.initial_time)
+
+        system = equations.system
+        begun = replace(
+            system,
+            kinetic_energy=formed(system.kinetic_energy),
+            potential_energy=formed(system.potential_energy),
+            forces=tuple(map(formed, system.forces)),
+            constraints=tuple(map(formed, system.constraints)),
+        )
+        return equations if begun == system else replace(equations, system=begun)
 
     @property
     def initial_time(self) -> sp.Expr:
@@ -145,10 +170,10 @@ class CheckedScene:
         Returns
         -------
         Definitions or None
-            Closed forms by their symbols, or None if the record does not hold the multipliers.
+            Closed forms by their symbols. None if the record does not hold the multipliers, or those of the beginning.
         """
         multipliers = self.derivation.multipliers()
-        if multipliers is None:
+        if multipliers is None or self.beginning is not self.known:
             return None
         rates = {self.system.rates[symbol]: self.system.time_derivative(value) for symbol, value in multipliers.items()}
         together: dict[sp.Symbol, sp.Expr] = {}
@@ -212,7 +237,7 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
     _require_given(checked, derived)
     pairs = (
         *_vanishing(translatable("constraint"), checked.system.constraints),
-        *_vanishing(translatable("derivative of constraint"), checked.derivation.stated.constraint_derivatives),
+        *_vanishing(translatable("derivative of constraint"), checked.stated.constraint_derivatives),
     )
     return at_start(checked, pairs)
 
@@ -313,8 +338,8 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
         )
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
     residuals = [
-        *_for_all_states(checked, checked.system.coordinates, checked.known.system.constraints, fixed),
-        *_for_all_states(checked, checked.system.velocities, checked.known.constraint_derivatives, fixed),
+        *_for_all_states(checked, checked.system.coordinates, checked.beginning.system.constraints, fixed),
+        *_for_all_states(checked, checked.system.velocities, checked.beginning.constraint_derivatives, fixed),
     ]
     always = Comparison(
         tuple(_vanishing(translatable("constraint"), residuals)),
@@ -427,7 +452,7 @@ def initial_accelerations(checked: CheckedScene, relations: Relations) -> tuple[
         Comparison(
             tuple(Pair(initial(a).name, value, a) for a, value in solution.items()),
             given=checked.start,
-            solves=(checked.known.bordered,),
+            solves=(checked.beginning.bordered,),
             certificate=checked.certificate(solution),
         ),
     )
@@ -464,7 +489,7 @@ def initial_series(checked: CheckedScene, relations: Relations) -> tuple[Compari
         Comparison(
             tuple(pairs),
             given=checked.start,
-            solves=(checked.known.bordered, checked.known.bordered_derivatives),
+            solves=(checked.beginning.bordered, checked.beginning.bordered_derivatives),
             certificate=checked.certificate(highest),
         ),
     )

@@ -7,6 +7,8 @@ from itertools import pairwise
 import pytest
 import sympy as sp
 
+import holonom
+
 from holonom.crosscheck.derivation import CheckedDerivation
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.initial_motion import COMPARISONS, CheckedScene, _without_closed_form
@@ -120,3 +122,29 @@ def test_four_values_together_or_two_not_linearly_may_have_no_closed_form():
     containing = {each: [e for e in equations if each in e.free_symbols] for each in x}
     assert _without_closed_form({*x}, containing) == {*groups[1], *groups[2]}
     assert _without_closed_form({*x[:6], x[8]}, containing) == set()
+
+
+@pytest.mark.parametrize(
+    ("force", "constraint", "law", "start", "series"),
+    [
+        ("max(t, 0)", "y - x", "u = t", 0, "x_0 + dx*t + t**3/12"),
+        ("max(t - 1, 0)", "y - x", "u = t", 1, "x_0 + dx*(t - 1) + (t - 1)**3/12"),
+        ("signum(u)", "y - x", "u = t", 0, "x_0 + dx*t + t**2/4"),
+        ("dot(u)*signum(u)", "y - x", "u = -sin(t)", 0, "x_0 + dx*t + t**2/4"),
+        ("abs(t*x)", "y - x", "u = t", 0, "x_0 + dx*t + t**3*x_0*sign(x_0)/12"),
+        ("0", "x - max(u, 0)^2*y", "u = sin(t)", 0, "x_0 + dx*t + y_0*t**2 + dy*t**3"),
+        ("0", "x - (if t > 0 then t^3 else 0)*y", "u = t", 0, "x_0 + dx*t + y_0*t**3"),
+    ],
+)
+def test_signs_of_functions_of_the_time_were_zero_at_their_zero(force, constraint, law, start, series):
+    """(13) and (18) had the mean of both sides, and the check none."""
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y, z], controls = [u],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2, forces = [{force}, 0, u], constraints = [{constraint}])$
+scene : holonomic_scene(system, control_law = [{law}], time_span = [{start}, 3],
+  initial_state = [y = 1, dot(y) = 1, z = 0, dot(z) = 0])$""")
+    (found,) = [each for each in scene.record.scenes[0].equations if each.id == "initial_series"]
+    names = {"dx": sp.Symbol("dot(x)_0", real=True), "dy": sp.Symbol("dot(y)_0", real=True)}
+    names |= {name: sp.Symbol(name, real=True) for name in ("t", "x_0", "y_0")}
+    assert sp.simplify(found.relations[0].right - sp.sympify(series, names)) == 0
+    assert not scene.check().disagreements
