@@ -442,6 +442,28 @@ def test_a_system_without_controls_has_the_laws_that_its_motions_show(
     assert (found.motion.verdict, found.universal.verdict, found.trajectory.kind) == (motion, universal, trajectory)
 
 
+@pytest.mark.parametrize(
+    ("energy", "constraint", "law", "start", "motion", "trajectory"),
+    [
+        ("(dot(x)^2 + x^2*dot(y)^2)/2", "y - u", "t", "[x = 0, dot(x) = 1]", "undecided", "not determined"),
+        ("(dot(x)^2 + dot(y)^2)/2", "y - x*abs(x) - u", "t", "[x = 0, dot(x) = 0]", "undecided", "closed form"),
+        ("(dot(x)^2 + dot(y)^2)/2", "y - u^(1/3)*x", "t^3", "[x = 1, dot(x) = 1]", "not free", "not determined"),
+        ("(dot(x)^2 + dot(y)^2)/2", "y - u*x", "bessel_j(0, 1)", "[x = 1, dot(x) = 0]", "undecided", "closed form"),
+        ("(dot(x)^2 + dot(y)^2)/2", "y - u", "airy_ai(t)", "[x = 1, dot(x) = 0]", "not free", "closed form"),
+    ],
+)
+def test_divisions_by_zero_and_special_functions_in_the_start_were_errors(
+    write_scene, energy, constraint, law, start, motion, trajectory
+):
+    """The first one passes through the pole of polar coordinates, the third one has y = t x."""
+    file = write_scene(f"""load("holonom.mac")$
+    system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = {energy},
+      constraints = [{constraint}])$
+    s : holonomic_scene(system, control_law = [u = {law}], initial_state = {start}, time_span = [0, 2])$""")
+    found = free_motion(file, None, {}, Limits())
+    assert (found.motion.verdict, found.trajectory.kind) == (motion, trajectory)
+
+
 def test_narrow_pulse_gets_a_verdict(write_scene):
     """The law begins with exp(-12250000); the verdict took a minute and gigabytes."""
     file = write_scene("""load("holonom.mac")$

@@ -168,7 +168,11 @@ def _verify_with_releases(motion: DescribedMotion, programs: ScenePrograms, seed
 
 def _verify_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str) -> list[ProgramVerdict]:
     problems = programs.problems
-    if wrong := other_premises(motion, problems, seed):
+    try:
+        wrong, irregular = other_premises(motion, problems, seed), ""
+    except IrregularPoint:
+        wrong, irregular = "", "an expression has no derivatives in the initial state"
+    if wrong:
         return [ProgramVerdict(programs.scene, PREMISES, CheckResult(Verdict.DISAGREES, DIGITS, 1, wrong))]
     solved = [solve for solve, problem in problems.items() if problem.motion is not None]
     parts = [f"motion program, {solve} solve" for solve in solved]
@@ -186,7 +190,11 @@ def _verify_problems(motion: DescribedMotion, programs: ScenePrograms, seed: str
     else:
         maker = _plain_states(motion, problems, seed)
         parts = [MATRICES, *parts]
-    verdicts += _verify(programs.scene, [PREMISES], values_of_inputs(motion, problems, seed))
+    if irregular:
+        undecided = CheckResult(Verdict.UNDECIDED, None, None, irregular)
+        verdicts.append(ProgramVerdict(programs.scene, PREMISES, undecided))
+    else:
+        verdicts += _verify(programs.scene, [PREMISES], values_of_inputs(motion, problems, seed))
     return [*verdicts, *_verify(programs.scene, parts, maker)]
 
 

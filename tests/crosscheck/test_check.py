@@ -120,6 +120,16 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span =
     assert {found.verdict for found in report.verdicts} <= {Verdict.PROVED, Verdict.AGREES, Verdict.NOTHING}
 
 
+@pytest.mark.parametrize(("bend", "speed"), [("x*abs(x)", 0), ("max(x^3, 0)", 1), ("x^(5/3)", 0)])
+def test_a_constraint_without_derivatives_in_the_start_was_an_internal_error(bend, speed):
+    report = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  constraints = [y - {bend} - u])$
+motion : holonomic_scene(system, control_law = [u = t], initial_state = [x = 0, dot(x) = {speed}])$""").check()
+    assert not report.disagreements
+    assert Verdict.UNDECIDED in {found.verdict for found in report.verdicts}
+
+
 @pytest.mark.parametrize("function", FUNCTIONS, ids=lambda each: each.head)
 def test_special_functions_are_met_in_a_description_by_their_heads(function):
     """Maxima takes minutes to evaluate one in 50 digits, which is therefore not asked for."""
