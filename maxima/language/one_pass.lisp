@@ -177,6 +177,8 @@
 
 (defun $contains_floats (e) (some-part-p #'(lambda (part) (or (floatp part) (bigfloatp part))) e))
 
+(defun $contains_strings (e) (some-part-p #'stringp e))
+
 (defun $contains_root (e)
   "Whether a power in it has a fraction for its exponent."
   (some-part-p #'(lambda (part) (and (consp part) (eq (caar part) 'mexpt) (ratnump (third part)))) e))
