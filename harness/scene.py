@@ -683,7 +683,7 @@ class Scene:
         """Search for equilibria over a control, with controls of any names."""
         from .stability.branches import find_branches
 
-        if isinstance(values, str):
+        if isinstance(values, str) or not len(values):
             raise HolonomError(ErrorKind.NOT_A_SETTING, detail=f"{control}={values}")
         numbers = [_numbers({control: value})[control] for value in values]
         return find_branches(*self._linear_problem(), control, numbers, _numbers(controls), **options)

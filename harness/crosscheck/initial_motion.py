@@ -66,7 +66,7 @@ class CheckedScene:
 
     @cached_property
     def beginning(self) -> IndependentEquations:
-        """The same evaluation with the signs that functions of the time have after t0."""
+        """The independent evaluation with signs of functions of the time after t0."""
         return self._beginning(self.derivation.known)
 
     @cached_property

@@ -8,7 +8,6 @@ import pytest
 import sympy as sp
 
 import holonom
-
 from holonom.crosscheck.derivation import CheckedDerivation
 from holonom.crosscheck.independent import IndependentEquations
 from holonom.crosscheck.initial_motion import COMPARISONS, CheckedScene, _without_closed_form

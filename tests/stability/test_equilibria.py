@@ -554,9 +554,10 @@ def test_forces_whose_squares_overflow_had_equilibria_everywhere(k, places):
     assert found.complete is bool(places)
 
 
-def test_a_text_is_not_a_sequence_of_digits(hanging):
+@pytest.mark.parametrize("values", ["12", []])
+def test_a_text_is_not_a_sequence_of_digits(hanging, values):
     with pytest.raises(HolonomError) as refused:
-        hanging.branches("u", "12")
+        hanging.branches("u", values)
     assert refused.value.kind is ErrorKind.NOT_A_SETTING
 
 
