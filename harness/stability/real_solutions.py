@@ -25,6 +25,7 @@ numbers follow:
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from itertools import chain, combinations, pairwise, product
@@ -40,6 +41,7 @@ from sympy.polys.orderings import grevlex
 from sympy.polys.rings import PolyElement, PolyRing, ring
 
 from ..program.arithmetic import Arithmetic, run_program
+from ..program.motion_problem import DOUBLE_DIGITS
 from ..program.motion_program import Constant, Operation, names_used
 from ..program.rewriting import computing
 from .linear_equations import LinearEquations
@@ -231,7 +233,7 @@ def rational_controls(equations: LinearEquations, t: str) -> dict[str, Fraction]
     equations : LinearEquations
         Of the scene.
     t : str
-        The time, a rational number.
+        The time in decimal digits. In as many as a double has, it may be rounded, and is not known.
 
     Returns
     -------
@@ -241,7 +243,9 @@ def rational_controls(equations: LinearEquations, t: str) -> dict[str, Fraction]
     if equations.law is None:
         return {}
     program, (polynomials, _) = computing(equations.law, set(equations.controls)), ring("t", QQ, grevlex)
-    inputs = dict.fromkeys(program.inputs, UNDEFINED) | {"t": polynomials(QQ(*Fraction(t).as_integer_ratio()))}
+    inputs = dict.fromkeys(program.inputs, UNDEFINED)
+    if len(Decimal(t).normalize().as_tuple().digits) < DOUBLE_DIGITS:
+        inputs["t"] = polynomials(QQ(*Fraction(t).as_integer_ratio()))
     found = run_program(program, inputs, _arithmetic(polynomials))
     numbers = {name: QQ(value.coeff(1)) for name, value in found.items() if value is not UNDEFINED}
     return {name: Fraction(int(each.numerator), int(each.denominator)) for name, each in numbers.items()}

@@ -554,6 +554,16 @@ def test_forces_whose_squares_overflow_had_equilibria_everywhere(k, places):
     assert found.complete is bool(places)
 
 
+@pytest.mark.parametrize(("start", "rational"), [("1/4", {"u": "0"}), ("1/3", {})])
+def test_a_control_at_a_rounded_time_was_rational(start, rational):
+    scene = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = x^2 + y, constraints = [y - u])$
+scene : holonomic_scene(system, control_law = [u = (t - {start})^2], initial_state = [x = 0, dot(x) = 1],
+  time_span = [{start}, 4])$""")
+    assert scene.equilibria(starts=2).rational == rational
+
+
 @pytest.mark.parametrize("values", ["12", []])
 def test_a_text_is_not_a_sequence_of_digits(hanging, values):
     with pytest.raises(HolonomError) as refused:
