@@ -333,6 +333,23 @@ def test_kinked_forces_and_laws_in_parts_were_refused_a_verdict(write_scene, sce
     assert found.trajectory.kind == "series"
 
 
+@pytest.mark.parametrize(
+    ("law", "end", "verdict"),
+    [
+        ("if t < 1 then 1 else 1", 2, "free"),
+        ("if t < 1 then 1 else 1 + (t - 1)^3", "1/2", "free"),
+        ("if t < 1 then 1 else 1 + (t - 1)^3", 2, "undecided"),  # it is not free from t = 1 on
+    ],
+)
+def test_laws_in_parts_left_the_motion_open_at_the_initial_state(write_scene, law, end, verdict):
+    file = write_scene(f"""load("holonom.mac")$
+    system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      constraints = [y - u*x])$
+    s : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 1, dot(x) = 1],
+      time_span = [0, {end}])$""")
+    assert free_motion(file, None, {}, Limits()).motion.verdict == verdict
+
+
 def test_a_system_without_constraints_ended_in_an_internal_error(write_scene):
     text = """load("holonom.mac")$
     system : holonomic_system(coordinates = [x], controls = [u], kinetic_energy = dot(x)^2/2, forces = [u])$
