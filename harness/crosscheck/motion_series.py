@@ -206,7 +206,7 @@ def compared_series(
     ------
     ComparedValue
     """
-    taylor, time = Taylor(order), number(series.t0)
+    taylor, time = Taylor(order), motion.first_time  # which the series has rounded
     curve: Values = motion.all_parameters() | motion.law.at(Taylor(order + 3), time, motion.parameters())
     curve |= {name: tuple(numbers(row)) for name, row in series.coordinates.items()}
     curve["t"] = (time, mp.one)
@@ -216,7 +216,7 @@ def compared_series(
             true = _coefficient(prescribed, k)
             yield ComparedValue(f"coefficient {k} of {name}", _coefficient(multipliers[name], k), true, abs(true))
     yield from _values_of_rows(series.controls, curve, mp.zero)
-    yield from values_of_start(motion, _start(series, time), correction)
+    yield from values_of_start(motion, _start(series), correction)
     ordered = [multipliers[name] for name in motion.system.multipliers]
     yield from _values_of_forces(motion, taylor, curve, ordered, series.constraint_forces)
     yield from values_of_series(motion, curve, tuple(series.coordinates), ordered, order)
@@ -245,8 +245,8 @@ def _values_of_forces(
             yield ComparedValue(f"coefficient {k} of {name}", x, _coefficient(true[s], k), changes[s][k])
 
 
-def _start(series: MotionSeries, time: mp.mpf) -> dict[str, mp.mpf]:
-    found = {"t": time}
+def _start(series: MotionSeries) -> dict[str, mp.mpf]:
+    found = {"t": number(series.t0)}
     for name, row in series.coordinates.items():
         found[name], found[f"dot({name})"] = numbers(row[:2])
     return found

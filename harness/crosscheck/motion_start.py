@@ -121,13 +121,14 @@ def nearer_start(motion: DescribedMotion, start: State, masses: State | None = N
 
 
 def _curve(motion: DescribedMotion, state: State) -> dict[str, Polynomial]:
-    law = motion.law.at(FLAT, state["t"], motion.parameters())
+    time = motion.first_time  # which a document has rounded
+    law = motion.law.at(FLAT, time, motion.parameters())
     places = {q: (state[q], rate) for q in state if (rate := state.get(f"dot({q})")) is not None}
     forcing = dict.fromkeys(
         motion.system.controls if motion.scene.servo_trees else (), (mp.zero,)
     )  # not in constraints
     forcing |= dict.fromkeys(motion.reacting, (mp.one,))
-    return motion.all_parameters() | forcing | law | places | {"t": (state["t"], mp.one)}
+    return motion.all_parameters() | forcing | law | places | {"t": (time, mp.one)}
 
 
 class _Search:

@@ -120,6 +120,18 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0], time_span =
     assert {found.verdict for found in report.verdicts} <= {Verdict.PROVED, Verdict.AGREES, Verdict.NOTHING}
 
 
+@pytest.mark.parametrize(
+    ("law", "start"), [("(t - sqrt(2))^2", "sqrt(2)"), ("1 + max(0, t - 1/3)^2", "1/3"), ("sin(abs(t - %pi))", "%pi")]
+)
+def test_the_check_took_rounded_initial_times_for_exact_ones(law, start):
+    report = holonom.system(f"""
+system : holonomic_system(coordinates = [x, y], controls = [u], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+  potential_energy = 10*y, constraints = [y - u])$
+motion : holonomic_scene(system, control_law = [u = {law}], initial_state = [x = 0, dot(x) = 1],
+  time_span = [{start}, 4])$""").check()
+    assert not report.disagreements
+
+
 @pytest.mark.parametrize(("bend", "speed"), [("x*abs(x)", 0), ("max(x^3, 0)", 1), ("x^(5/3)", 0)])
 def test_a_constraint_without_derivatives_in_the_start_was_an_internal_error(bend, speed):
     report = holonom.system(f"""
