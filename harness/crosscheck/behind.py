@@ -12,7 +12,7 @@ import sympy as sp
 
 from .normal_form import is_identically_zero
 
-MOST_FLAT = 6
+MOST_FLAT = 12
 """Derivatives of a function that may vanish where its sign is found."""
 
 
@@ -44,7 +44,7 @@ def form_behind(expression: sp.Expr, meanings: Mapping[sp.Symbol, sp.Expr], time
 
 
 def _sign_behind(g: sp.Expr, time: sp.Symbol, start: sp.Expr) -> sp.Expr | None:
-    """Return the sign of a function that vanishes at a time, None if unknown."""
+    """Return the sign of a function that vanishes at a time, else None, nan if unknown."""
     if time not in g.free_symbols:
         return None
     for order in range(MOST_FLAT + 1):
@@ -52,4 +52,4 @@ def _sign_behind(g: sp.Expr, time: sp.Symbol, start: sp.Expr) -> sp.Expr | None:
         if not is_identically_zero([value]):
             return sp.sign(value) if order else None
         g = g.diff(time)
-    return None
+    return sp.nan

@@ -236,7 +236,7 @@ def initial_state(checked: CheckedScene, relations: Relations) -> tuple[Comparis
             raise NotComparable(translatable("two values of %(name)s"), name=name)
     _require_given(checked, derived)
     pairs = (
-        *_vanishing(translatable("constraint"), checked.system.constraints),
+        *_vanishing(translatable("constraint"), checked.stated.system.constraints),
         *_vanishing(translatable("derivative of constraint"), checked.stated.constraint_derivatives),
     )
     return at_start(checked, pairs)
