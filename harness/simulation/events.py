@@ -25,9 +25,18 @@ if TYPE_CHECKING:
     from .mode import Mode
 
 DRIFT = 10  # tolerances: the same later, where an expression has had no sign yet
+STAY = 1 / 2048  # of the time span: what is zero for so long remains zero; friction may touch it for a step
 POLE = 1e3  # times what an expression is nearby: at a change of its sign it has no zero
 
 Values = Callable[[Numbers, Numbers], Numbers]
+
+
+class Sides(dict[str, int]):
+    """Signs that expressions have had since they left zero."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.arrived: dict[str, Any] = {}  # expressions that are zero again, and since when
 
 
 class Ending(NamedTuple):
@@ -59,18 +68,18 @@ def first_event(motion: "HybridMotion", end: Any) -> Crossing | None:
     HolonomError
         An expression has no real, finite value, or the motion cannot be continued so far.
     """
-    sides: dict[str, int] = {}
+    sides = Sides()
     events: dict[Mode, Events] = {}
     span, precision = float(end - motion.time), motion.mode.precision
     for step in motion.integrate(end):
         if step.mode not in events:
             problem, solutions = step.mode.problem, step.mode.engine.solutions
             values = values_in(problem, problem.ends.events, precision, solutions)
-            events[step.mode] = Events(problem.ends.until, values, precision, span)
+            events[step.mode] = Events(problem.ends.until, values, precision, span, STAY)
         found = events[step.mode].first_event(step, sides)
         if found is not None:
             return found
-    return None
+    return next((Crossing(t, name, -sides[name]) for name, t in sides.arrived.items()), None)
 
 
 def values_in(
@@ -117,14 +126,18 @@ class Events(SignedFunctions):
         Numbers of the motion.
     span : float
         The time span.
+    stay : float
+        How long an expression stays zero until it counts, as a share of the span.
     """
 
-    def __init__(self, names: Sequence[str], evaluate: Values, precision: Precision, span: float) -> None:
+    def __init__(
+        self, names: Sequence[str], evaluate: Values, precision: Precision, span: float, stay: float = 0.0
+    ) -> None:
         super().__init__(precision, span)
-        self._names, self._evaluate = names, evaluate
+        self._names, self._evaluate, self._stay = names, evaluate, stay * span
         self._end: Any = None  # of the last step
 
-    def first_event(self, step: Step, sides: dict[str, int]) -> Crossing | None:
+    def first_event(self, step: Step, sides: Sides) -> Crossing | None:
         """Return the first crossing within a step.
 
         An expression that a new mode keeps at zero, as dry friction a speed, crosses zero where the mode begins.
@@ -133,8 +146,8 @@ class Events(SignedFunctions):
         ----------
         step : Step
             A step of the mode.
-        sides : dict of str to int
-            Signs that expressions have had since they left zero. Those of this step are added.
+        sides : Sides
+            Those of this step are added.
 
         Returns
         -------
@@ -145,10 +158,8 @@ class Events(SignedFunctions):
         HolonomError
             An expression has no real, finite value before.
         """
-        entered, self._end = step.start != self._end, step.end
-        stopped = self._at_zero(step, sides) if entered and sides else []
-        if stopped:
-            return Crossing(step.start, stopped[0], -sides[stopped[0]])
+        if arrived := self._arrived(step, sides):
+            return arrived
         self._rows, all_seen = self._with_sides(sides), sides.keys() >= set(self._names)
         if all_seen and self._is_clear(step):
             return None
@@ -165,6 +176,16 @@ class Events(SignedFunctions):
                 return found
             self._rows = all_rows
         return None
+
+    def _arrived(self, step: Step, sides: Sides) -> Crossing | None:
+        """Return the arrival of an expression that a mode has kept at zero."""
+        entered, self._end = step.start != self._end, step.end
+        if not sides or not (entered or sides.arrived):
+            return None
+        since, zero = sides.arrived, self._at_zero(step, sides)
+        sides.arrived = {name: since.get(name, step.start) for name in zero if entered or name in since}
+        lasting = ((name, t) for name, t in sides.arrived.items() if float(step.end - t) >= self._stay)
+        return next((Crossing(t, name, -sides[name]) for name, t in lasting), None)
 
     def _at_zero(self, step: Step, sides: Mapping[str, int]) -> list[str]:
         """Return the expressions that had a sign and have none in a whole step."""

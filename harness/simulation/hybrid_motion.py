@@ -42,7 +42,7 @@ from .control_matrix import controls_may_fail
 from .engines.engine import Step, advance
 from .engines.fallback import EngineSegment
 from .evaluation import Evaluation, Numbers, as_floats, evaluation, evaluation_once
-from .events import Events, Values, values_in
+from .events import Events, Sides, Values, values_in
 from .friction_modes import FrictionModes, modes_that_may_agree
 from .inputs import Inputs
 from .matrices import Matrices, MotionMatrices, Vector
@@ -113,7 +113,7 @@ class HybridMotion:
         self._span = float(end) - float(problem.start["t"])
         self._request, self._precision, self._end = request, request.numbers, end
         self._modes: dict[tuple[Any, ...], Mode] = {}
-        self._sides: dict[str, int] = {}  # signs of the conditions of releases, since they left zero
+        self._sides = Sides()  # of the conditions of releases
         self._zero = self._impulse = self._precision.number("0")
         self.switchings: list[Switching] = []
         self.intervals: list[ModeInterval] = []

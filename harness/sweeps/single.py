@@ -19,7 +19,7 @@ from ..program.motion_program import Expression
 from ..program.precision import read_precision
 from ..simulation.engines.engine import Step
 from ..simulation.evaluation import in_full_vectors
-from ..simulation.events import Events
+from ..simulation.events import STAY, Events, Sides
 from ..simulation.mode import Mode
 from ..simulation.request import SimulationRequest
 from ..simulation.result import Report
@@ -128,7 +128,7 @@ class _Look:
         span: float,
     ) -> None:
         self._values, self._along, self._stops, self._span = values, along, stops, span
-        self._zeros, self._sides = np.full(zeros, np.nan), [{} for _ in range(zeros)]
+        self._zeros, self._sides = np.full(zeros, np.nan), [Sides() for _ in range(zeros)]
         self._sizes = np.zeros(zeros)  # largest values at the ends of steps
         self._taken: list[tuple] = []
         self._points: dict[float, Floats] = {}
@@ -172,7 +172,11 @@ class _Look:
     def _crossings(self, mode: Mode, place: int) -> Events:
         """Return the zeros of a quantity in a mode."""
         row = [self._along + place]
-        return Events([str(place)], lambda times, states: self._values(mode, times, states)[row], DOUBLE, self._span)
+
+        def values(times: Floats, states: Floats) -> Floats:
+            return self._values(mode, times, states)[row]
+
+        return Events([str(place)], values, DOUBLE, self._span, STAY)
 
     def _polynomials(self, step: Step) -> list[tuple]:
         """Return the quantities on parts of a step so short that coefficients fall off.

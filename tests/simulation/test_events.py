@@ -130,6 +130,22 @@ def test_a_speed_that_friction_stops_ended_no_motion(belt, engine, c_compiler):
     assert float(report.t) == pytest.approx(1 if belt == "0" else 0.4, rel=1e-9)
 
 
+@pytest.mark.parametrize("engine", ["auto", "robust", "runge-kutta"])
+def test_a_touch_that_an_engine_takes_for_a_stop_ends_no_motion(engine, c_compiler):
+    """It slips from t = 1 on, when x = 1/3, and touches the belt's speed each 2 pi/sqrt(3), where friction ends."""
+    report = (
+        holonom.system("""
+        system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2,
+          forces = [-signum(dot(x) - 1/3) - 3*x])$
+        belt : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1/3], time_span = [0, 10],
+          until = [dot(x) - 1/3])$""")
+        .simulate(samples=2, engine=engine)
+        .report
+    )
+    assert report.ending.crossed is None
+    assert float(report.t) == 10
+
+
 OSCILLATORS = """
 system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
   potential_energy = x^2/2 + y^2)$
