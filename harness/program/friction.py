@@ -139,8 +139,7 @@ def _with_slopes(program: Program, names: Collection[str]) -> Program | None:
 def slides(problem: MotionProblem, name: str) -> bool:
     """Return True if a motion can slide on a switching surface with a drive.
 
-    It cannot if multipliers stand in its forces in several directions, or if a force without them is not affine in
-    the sign.
+    It cannot if multipliers stand in its forces in several directions.
 
     Parameters
     ----------
@@ -154,11 +153,35 @@ def slides(problem: MotionProblem, name: str) -> bool:
     bool
     """
     ones = {sign.name: 1 for sign in problem.signs}
-    if f"size[{problem.places[name]}]" not in problem.switching.outputs:
-        forces = computing(problem.matrices, {output for output in problem.matrices.outputs if output.startswith("h[")})
-        if _with_slopes(with_sizes(forces, ones, {name}), {name}) is None:
-            return False
     return affine_terms(problem, ones, {name}, unknown_amounts(problem, {name})) is not None
+
+
+def curved_forces(problem: MotionProblem, pattern: Pattern, zeros: Collection[str]) -> tuple[Program, list[str]] | None:
+    """Return the forces that are not affine in signs whose amounts they are.
+
+    Parameters
+    ----------
+    problem : MotionProblem
+        A motion with signs.
+    pattern : Pattern
+        The values of the other signs.
+    zeros : collection of str
+        Signs of the switching surfaces on which the motion is.
+
+    Returns
+    -------
+    tuple of Program and list of str, or None
+        Outputs ``h[s]`` and the signs, its last inputs. None if the forces are affine for all states.
+    """
+    outputs = problem.switching.outputs
+    names = [name for name, place in problem.places.items() if name in zeros and f"size[{place}]" not in outputs]
+    forces = computing(problem.matrices, {output for output in problem.matrices.outputs if output.startswith("h[")})
+    given = {name: number for name, number in numbers_in(pattern).items() if name not in names}
+    others = dict.fromkeys(problem.places.keys() - given.keys() - set(names), ONE)
+    forces = with_numbers(with_sizes(forces, pattern, zeros), given | others)
+    if _with_slopes(forces, names) is not None:
+        return None
+    return replace(forces, inputs=(*(name for name in forces.inputs if name not in names), *names)), names
 
 
 def sliding_signs(problem: MotionProblem, pattern: Pattern) -> Program:

@@ -26,6 +26,7 @@ from ..program.friction import (
     STUCK,
     Pattern,
     affine_terms,
+    curved_forces,
     slides,
     sticking,
     unknown_amounts,
@@ -38,6 +39,7 @@ from .matrices import Vector
 from .zeros import ZERO
 
 SAME = 1e-9  # of their sizes: a difference that rounding may make
+AMOUNTS = (-1.0, 0.0, 0.6, 1.0)  # of friction, at which forces are compared with affine ones
 SINGULAR = 1e12  # condition number of equations without a unique solution
 
 
@@ -126,6 +128,9 @@ class FrictionModes:
         self._outputs = list(terms.outputs)
         inputs = *(name for name in terms.inputs if name not in self._tried), *self._tried
         self._function = evaluation(replace(terms, inputs=inputs), precision)
+        self.nonlinear = self.rough
+        curved = curved_forces(problem, pattern, set(self._zeros) - set(self.rough))
+        self._forces, self._curved = (None, []) if curved is None else (evaluation(curved[0], precision), curved[1])
 
     def _affine_terms(self, problem: MotionProblem) -> Program | None:
         """Return the program of the terms, and set the modes to try."""
@@ -180,7 +185,27 @@ class FrictionModes:
             for signs, matrices, right in equations
         ]
         agreeing = [solution for solution in found if solution is not None]
+        self.nonlinear = self.rough
+        slide = {name for solution in agreeing for name in self._curved if solution.pattern[name] == SLIDING}
+        if slide and not self._are_forces_affine(inputs):
+            self.nonlinear = [*self.rough, *sorted(slide)]
+            agreeing = [each for each in agreeing if not any(each.pattern[name] == SLIDING for name in slide)]
         return sorted(agreeing, key=lambda solution: -list(solution.pattern.values()).count(SLIDING))
+
+    def _are_forces_affine(self, inputs: Numbers) -> bool:
+        """Return True if the forces at a state are affine in the signs of the zeros.
+
+        Amounts between 1 and -1 are those of no force otherwise (Filippov).
+        """
+        amounts = np.array(list(product(AMOUNTS, repeat=len(self._curved)))).T
+        given = zeros(self._precision, len(inputs) + len(amounts), amounts.shape[1])
+        given[: len(inputs)] = inputs[:, None]
+        for row, each in zip(given[len(inputs) :], amounts, strict=True):
+            row[...] = self._precision.numbers(each)
+        forces = as_floats(self._forces(given)).T
+        affine = np.column_stack([amounts.T, np.ones(amounts.shape[1])])
+        fitted = affine @ np.linalg.lstsq(affine, forces)[0]
+        return bool(np.all(np.abs(forces - fitted) <= SAME * np.max(np.abs(forces), axis=0)))
 
     def guards(self, inputs: Numbers) -> Numbers:
         """Return functions that are positive while the accelerations remain unique.
