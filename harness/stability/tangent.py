@@ -101,7 +101,8 @@ class Tangent:
         ndarray, shape (n, k)
         """
         x = self._inverse @ constrained
-        return x - self.basis @ (self.basis.T @ (self._mass @ x))
+        x = x - self.basis @ (self.basis.T @ (self._mass @ x))
+        return x + self._inverse @ (constrained - self._jacobian @ x)  # rounding errors of light coordinates
 
     def solve(self, force: Matrix, constrained: Matrix) -> tuple[Matrix, Matrix]:
         """Return x and mu of A x - R mu = F, J x = b, where R are the reactions.
