@@ -44,7 +44,7 @@ def form_behind(expression: sp.Expr, meanings: Mapping[sp.Symbol, sp.Expr], time
 
 
 def _sign_behind(g: sp.Expr, time: sp.Symbol, start: sp.Expr) -> sp.Expr | None:
-    """Return the sign of a function that vanishes at a time, else None, nan if unknown."""
+    """Return the sign behind a zero, nan if unknown, None without a zero."""
     if time not in g.free_symbols:
         return None
     for order in range(MOST_FLAT + 1):

@@ -178,7 +178,7 @@ class Events(SignedFunctions):
         return None
 
     def _arrived(self, step: Step, sides: Sides) -> Crossing | None:
-        """Return the arrival of an expression that a mode has kept at zero."""
+        """Return the arrival of an expression that remains zero."""
         entered, self._end = step.start != self._end, step.end
         if not sides or not (entered or sides.arrived):
             return None

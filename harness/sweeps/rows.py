@@ -23,7 +23,7 @@ from ..program.motion_program import Expression, Name, Operation, Program, calls
 from ..program.precision import read_precision
 from ..program.rewriting import computing
 from ..simulation.accuracy_check import MARGIN, expected, may_hide, relative_energy_error, trusted
-from ..simulation.constraints.directions import or_one
+from ..simulation.constraints.directions import is_indefinite, or_one
 from ..simulation.control_matrix import controls_may_fail
 from ..simulation.evaluation import Evaluation, in_full_vectors
 from ..simulation.initial_state import InitialStates, started
@@ -221,7 +221,7 @@ class RowMaker:
         start = self._batch_matrices(self._start, states, values), states
         nominal = nominal_at_each(self._problem, start[0].mass, states, values, self._end - self._start)
         apart = (nominal.state * COARSE < nominal_of(self._common).state[:, None]).any(axis=0)
-        apart |= (np.diagonal(start[0].mass) < 0).any(axis=-1)
+        apart |= is_indefinite(start[0].mass)
         if apart.any():
             rest = there[~apart]
             left = self._together(rows, rest, states[:, ~apart], stops) if len(rest) else rest

@@ -249,6 +249,18 @@ def test_impossible_rows_are_marked_and_the_rest_is_right(rows_of, scenes):
     assert all(found["note"][found["status"] != "ok"])
 
 
+def test_rows_of_a_kinetic_energy_that_is_negative_for_some_velocities_break_off(rows_of, tmp_path):
+    file = tmp_path / "coupled.mac"
+    file.write_text("""load("holonom.mac")$
+system : holonomic_system(coordinates = [x, y], parameters = [c],
+  kinetic_energy = (dot(x)^2 + dot(y)^2)/2 + c*dot(x)*dot(y))$
+scene : holonomic_scene(system, parameter_values = [c = 0], time_span = [0, 1],
+  initial_state = [x = 0, y = 0, dot(x) = 1, dot(y) = 0])$
+""")
+    found = columns(rows_of(file, "final", "c=-2:2:3").table(0, 3))
+    assert list(found["status"]) == ["broken off", "ok", "broken off"]
+
+
 SHORT = ("0/0", "at(1/(x-x),1)", "zero(1/(k-k))")
 LONG = ("1/0", "log(-1-x^2)", "max(1/(k-k))", "mean(sqrt(-1-x^2))")
 NOWHERE_FINITE = [*SHORT, *(pytest.param(outputs, marks=pytest.mark.long) for outputs in LONG)]

@@ -144,6 +144,30 @@ def cholesky(metric: Matrix) -> tuple[Matrix, Matrix] | None:
     return (lengths * factor, inverse / np.matrix_transpose(lengths)) if regular else None
 
 
+def is_indefinite(masses: Matrix) -> np.ndarray:
+    """Return True for mass matrices that are negative along a direction.
+
+    Parameters
+    ----------
+    masses : ndarray, shape (n, n, k)
+        A of k states.
+
+    Returns
+    -------
+    ndarray of bool, shape (k,)
+    """
+    diagonals = np.diagonal(masses)
+    negative = (diagonals < 0).any(axis=-1)
+    if np.count_nonzero(masses) == np.count_nonzero(diagonals):
+        return negative
+    return negative | _is_negative(np.moveaxis(np.where(np.isfinite(masses), masses, 0.0), -1, 0))
+
+
+def _is_negative(mass: Matrix) -> np.ndarray:
+    values = np.linalg.eigvalsh(mass)
+    return values[..., 0] < -NEGATIVE * np.max(np.abs(values), axis=-1)
+
+
 def not_positive_definite(mass: Matrix) -> HolonomError:
     """Return the error of a mass matrix that is singular or indefinite.
 
@@ -156,9 +180,7 @@ def not_positive_definite(mass: Matrix) -> HolonomError:
     -------
     HolonomError
     """
-    masses = np.linalg.eigvalsh(mass)
-    indefinite = (masses[..., 0] < -NEGATIVE * np.max(np.abs(masses), axis=-1)).any()
-    return HolonomError(ErrorKind.MASS_INDEFINITE if indefinite else ErrorKind.MASS_SINGULAR)
+    return HolonomError(ErrorKind.MASS_INDEFINITE if _is_negative(mass).any() else ErrorKind.MASS_SINGULAR)
 
 
 def or_one(lengths: Vector) -> Vector:
