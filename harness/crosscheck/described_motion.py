@@ -248,13 +248,15 @@ class DescribedMotion:
         """
         lagrangian = self._gradient_of_lagrangian(taylor, values)
         reactions = self.constraint_forces(taylor, values, multipliers)
+        sizes = self.tape.sizes(taylor, values, self.tape.needed_for([place for row in self._forces for place in row]))
         found = []
         for s, q in enumerate(self.system.coordinates):
             inertia = taylor.rate(lagrangian.get(f"dot({q})", (mp.zero,)))
             forces = [values[place] for place in self._forces[s]]
             terms = [lagrangian.get(q, (mp.zero,)), *forces, reactions.get(q, (mp.zero,))]
             value = taylor.add(inertia, *(taylor.scale(-1, term) for term in terms))
-            found.append(Residual(value, taylor.add(_sizes(inertia), *map(_sizes, terms))))
+            size = taylor.add(*map(_sizes, (inertia, *terms)), *(sizes[place] for place in self._forces[s]))
+            found.append(Residual(value, size))
         return found
 
     def constraint_forces(

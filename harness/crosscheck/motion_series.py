@@ -377,7 +377,7 @@ def _changes(
 ) -> list[list[mp.mpf]]:
     """Return the sensitivity of results to relative changes of all coefficients.
 
-    The coefficients are rounded.
+    The coefficients are rounded, and so may the initial time be.
     """
     found = [[mp.zero] * (order + 1) for _ in before]
     share = mp.mpf(10) ** (-mp.dps // 3)
@@ -388,6 +388,7 @@ def _changes(
             return tuple(x * (1 + share * draw.choice((-1, 1)) * (1 + draw.random())) for x in row)
 
         changed = curve | {q: moved(curve[q]) for q in (*motion.system.coordinates, *motion.freed)}
+        changed["t"] = (*moved(curve["t"][:1]), *curve["t"][1:])
         after = made(changed, list(map(moved, multipliers)))
         for own, *both in zip(found, before, after, strict=True):
             for k in range(order + 1):

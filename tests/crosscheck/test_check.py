@@ -132,6 +132,14 @@ motion : holonomic_scene(system, control_law = [u = {law}], initial_state = [x =
     assert not report.disagreements
 
 
+@pytest.mark.parametrize(("force", "start"), [("t - sqrt(2)", "sqrt(2)"), ("abs(sin(t))*x", "%pi")])
+def test_forces_that_cancel_at_an_irrational_time_were_wrong(force, start):
+    report = holonom.system(f"""
+system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, forces = [{force}])$
+motion : holonomic_scene(system, initial_state = [x = 2, dot(x) = 0], time_span = [{start}, 4])$""").check()
+    assert not report.disagreements
+
+
 @pytest.mark.parametrize(("bend", "speed"), [("x*abs(x)", 0), ("max(x^3, 0)", 1), ("x^(5/3)", 0)])
 def test_a_constraint_without_derivatives_in_the_start_was_an_internal_error(bend, speed):
     report = holonom.system(f"""
