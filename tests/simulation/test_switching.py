@@ -636,6 +636,27 @@ scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1, z = 0, dot(z
         scene.simulate(until=2)
 
 
+def test_continuous_forces_by_the_size_of_a_speed_that_friction_stops():
+    """At rest they do not depend on the sign."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x, z], kinetic_energy = (dot(x)^2 + dot(z)^2)/2,
+  forces = [t/10 - signum(dot(x)), exp(-dot(x)*signum(dot(x)))])$
+scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 1, z = 0, dot(z) = 0])$""")
+    stop = 10 - math.sqrt(80)
+    moving = solve_ivp(lambda t, _: [math.exp(-(1 - t + t**2 / 20))], (0, stop), [0], rtol=1e-12, atol=1e-14).y[0, -1]
+    assert scene.simulate(until=2, samples=2)["dot(z)"][-1] == pytest.approx(moving + 2 - stop, rel=1e-10)
+
+
+def test_a_product_of_two_signs_that_slide_was_that_of_their_means():
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x, y, z], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2,
+  forces = [t/10 - signum(dot(x)), t/5 - signum(dot(y)), signum(dot(x))*signum(dot(y))])$
+scene : holonomic_scene(system,
+  initial_state = [x = 0, dot(x) = 1, y = 0, dot(y) = 1/2, z = 0, dot(z) = 0])$""")
+    with failing(ErrorKind.NO_WAY_ON):
+        scene.simulate(until=2)
+
+
 def test_function_of_the_velocities_may_jump_with_an_impulse():
     """The momentum of both is theirs behind the kink of u, where the friction has turned; the motion stayed at rest."""
     scene = holonom.system("""
