@@ -175,6 +175,8 @@ def curved_forces(problem: MotionProblem, pattern: Pattern, zeros: Collection[st
     """
     outputs = problem.switching.outputs
     names = [name for name, place in problem.places.items() if name in zeros and f"size[{place}]" not in outputs]
+    if not names:
+        return None
     forces = computing(problem.matrices, {output for output in problem.matrices.outputs if output.startswith("h[")})
     given = {name: number for name, number in numbers_in(pattern).items() if name not in names}
     others = dict.fromkeys(problem.places.keys() - given.keys() - set(names), ONE)

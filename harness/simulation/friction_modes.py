@@ -39,7 +39,7 @@ from .matrices import Vector
 from .zeros import ZERO
 
 SAME = 1e-9  # of their sizes: a difference that rounding may make
-AMOUNTS = (-1.0, 0.0, 0.6, 1.0)  # of friction, at which forces are compared with affine ones
+DRAWN = 8  # points more than an affine function has numbers, at which forces are compared with one
 SINGULAR = 1e12  # condition number of equations without a unique solution
 
 
@@ -197,7 +197,8 @@ class FrictionModes:
 
         Amounts between 1 and -1 are those of no force otherwise (Filippov).
         """
-        amounts = np.array(list(product(AMOUNTS, repeat=len(self._curved)))).T
+        count = len(self._curved)
+        amounts = np.random.default_rng(0).uniform(-1.0, 1.0, size=(count, count + 1 + DRAWN))
         given = zeros(self._precision, len(inputs) + len(amounts), amounts.shape[1])
         given[: len(inputs)] = inputs[:, None]
         for row, each in zip(given[len(inputs) :], amounts, strict=True):
