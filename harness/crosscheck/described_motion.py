@@ -107,8 +107,12 @@ class DescribedMotion:
     @property
     def reacting(self) -> tuple[str, ...]:
         """Multipliers in the forces."""
-        needed = self.tape.needed_for([place for parts in self._forces for place in parts])
+        needed = self._needed_for_forces
         return tuple(name for name in self.system.multipliers if self.tape.names.get(name) in needed)
+
+    @cached_property
+    def _needed_for_forces(self) -> set[int]:
+        return self.tape.needed_for([place for parts in self._forces for place in parts])
 
     def _standing_in(self, places: Sequence[int]) -> tuple[str, ...]:
         """Return controls without a law that occur in expressions."""
@@ -248,7 +252,7 @@ class DescribedMotion:
         """
         lagrangian = self._gradient_of_lagrangian(taylor, values)
         reactions = self.constraint_forces(taylor, values, multipliers)
-        sizes = self.tape.sizes(taylor, values, self.tape.needed_for([place for row in self._forces for place in row]))
+        sizes = self.tape.sizes(taylor, values, self._needed_for_forces)
         found = []
         for s, q in enumerate(self.system.coordinates):
             inertia = taylor.rate(lagrangian.get(f"dot({q})", (mp.zero,)))

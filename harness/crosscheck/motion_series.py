@@ -342,10 +342,11 @@ def _values_of_equations(
 ) -> Iterator[ComparedValue]:
     """Check that power series satisfy the equations of motion and all constraints."""
     places = [*motion.constraints, *motion.outputs]
+    needed = motion.tape.needed_for(places)
 
     def residuals(curve: Values, multipliers: list[Polynomial]) -> list[Residual]:
         values = motion.values(taylor, whole(curve, multipliers))
-        sizes = motion.tape.sizes(taylor, values)
+        sizes = motion.tape.sizes(taylor, values, needed)
         left = [Residual(values[place], sizes[place]) for place in places]
         return motion.equations(taylor, values, multipliers) + left
 

@@ -128,7 +128,6 @@ class FrictionModes:
         self._outputs = list(terms.outputs)
         inputs = *(name for name in terms.inputs if name not in self._tried), *self._tried
         self._function = evaluation(replace(terms, inputs=inputs), precision)
-        self.nonlinear = self.rough
         curved = curved_forces(problem, pattern, set(self._zeros) - set(self.rough))
         self._forces, self._curved = (None, []) if curved is None else (evaluation(curved[0], precision), curved[1])
 
@@ -185,12 +184,24 @@ class FrictionModes:
             for signs, matrices, right in equations
         ]
         agreeing = [solution for solution in found if solution is not None]
-        self.nonlinear = self.rough
-        slide = {name for solution in agreeing for name in self._curved if solution.pattern[name] == SLIDING}
-        if slide and not self._are_forces_affine(inputs):
-            self.nonlinear = [*self.rough, *sorted(slide)]
-            agreeing = [each for each in agreeing if not any(each.pattern[name] == SLIDING for name in slide)]
+        nonlinear = self.nonlinear(inputs)
+        agreeing = [each for each in agreeing if not any(each.pattern[name] == SLIDING for name in nonlinear)]
         return sorted(agreeing, key=lambda solution: -list(solution.pattern.values()).count(SLIDING))
+
+    def nonlinear(self, inputs: Numbers) -> list[str]:
+        """Return the signs whose amounts determine no forces at a state.
+
+        Parameters
+        ----------
+        inputs : ndarray, shape (inputs,)
+            As for `agreeing`.
+
+        Returns
+        -------
+        list of str
+            Those that cannot slide, and those in which forces are not affine.
+        """
+        return self.rough if not self._curved or self._are_forces_affine(inputs) else [*self.rough, *self._curved]
 
     def _are_forces_affine(self, inputs: Numbers) -> bool:
         """Return True if the forces at a state are affine in the signs of the zeros.

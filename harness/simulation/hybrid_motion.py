@@ -564,8 +564,8 @@ class HybridMotion:
         if not modes.known(inputs):
             inputs = self._inputs(*self._shortly_behind(t, state))
         found = modes.agreeing(inputs)
-        if not found and modes.nonlinear:
-            names = self._of(modes.nonlinear)
+        if not found and (nonlinear := modes.nonlinear(inputs)):
+            names = self._of(nonlinear)
             self._reject(t, translatable("%(sign)s slides, and forces are not linear in its friction", sign=names))
         if found and all(found[0].is_shared_as(each) for each in found):
             if len(found) > 1:

@@ -324,7 +324,7 @@ def linearize(problem: MotionProblem, equations: LinearEquations, at: Fraction |
     if changing and not (of_state and is_smooth(equations, point, nominal_of(problem).state)):
         raise HolonomError(ErrorKind.NOT_ANALYTIC, problem.scene, changing[0].of)
     with np.errstate(invalid="ignore"):
-        found = linearized(problem, equations, point, t)
+        found = linearization_of(problem, equations, point, t, *tangent_at(problem, equations, point))
     if not all(np.isfinite(each).all() for each in (found.C, *found.D.values())):
         raise HolonomError(ErrorKind.NO_DERIVATIVES, time=t)
     return found
@@ -383,32 +383,6 @@ def changing_signs(problem: MotionProblem, t: float, state: Vector) -> list[Sign
     return changing
 
 
-def linearized(
-    problem: MotionProblem, equations: LinearEquations, point: Point, at: float | None = None
-) -> Linearization:
-    """Linearise about a point at which the equations of motion hold.
-
-    Parameters
-    ----------
-    problem, equations : MotionProblem, LinearEquations
-        As for `linearize`.
-    point : Point
-        State with accelerations, multipliers and controls.
-    at : float or None
-        The time at which a motion is there, or None for an equilibrium.
-
-    Returns
-    -------
-    Linearization
-
-    Raises
-    ------
-    HolonomError
-        The constraints are singular there.
-    """
-    return linearization_of(problem, equations, point, at, *tangent_at(problem, equations, point))
-
-
 def tangent_at(
     problem: MotionProblem, equations: LinearEquations, point: Point
 ) -> tuple[Mapping[str, Matrix], Tangent]:
@@ -416,8 +390,10 @@ def tangent_at(
 
     Parameters
     ----------
-    problem, equations, point : MotionProblem, LinearEquations, Point
-        As for `linearized`.
+    problem, equations : MotionProblem, LinearEquations
+        As for `linearize`.
+    point : Point
+        State with accelerations, multipliers and controls, at which the equations of motion hold.
 
     Returns
     -------
@@ -467,8 +443,10 @@ def linearization_of(
 
     Parameters
     ----------
-    problem, equations, point, at : MotionProblem, LinearEquations, Point, float or None
-        As for `linearized`.
+    problem, equations, point : MotionProblem, LinearEquations, Point
+        As for `tangent_at`.
+    at : float or None
+        The time at which a motion is there, or None for an equilibrium.
     here, tangent : mapping of str to ndarray, Tangent
         As of `tangent_at`.
 

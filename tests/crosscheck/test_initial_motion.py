@@ -145,5 +145,12 @@ scene : holonomic_scene(system, control_law = [{law}], time_span = [{start}, 3],
     (found,) = [each for each in scene.record.scenes[0].equations if each.id == "initial_series"]
     names = {"dx": sp.Symbol("dot(x)_0", real=True), "dy": sp.Symbol("dot(y)_0", real=True)}
     names |= {name: sp.Symbol(name, real=True) for name in ("t", "x_0", "y_0")}
-    assert sp.simplify(found.relations[0].right - sp.sympify(series, names)) == 0
+    truth = sp.sympify(series, names)
+    assert sp.simplify(found.relations[0].right - truth) == 0
+    expanded = scene.series(order=3, digits="exact").coordinates
+    numbers = {f"{name}_0": sp.Rational(expanded[name][0]) for name in "xy"}
+    numbers |= {f"dot({name})_0": sp.Rational(expanded[name][1]) for name in "xy"}
+    values = truth.xreplace({sp.Symbol(name, real=True): number for name, number in numbers.items()})
+    powers = sp.Poly(sp.expand(values.xreplace({names["t"]: names["t"] + start})), names["t"])
+    assert [sp.Rational(x) for x in expanded["x"][:4]] == [powers.coeff_monomial(names["t"] ** k) for k in range(4)]
     assert not scene.check().disagreements
