@@ -80,7 +80,7 @@ def weighted_constraints(mass: Matrix, jacobian: Matrix) -> WeightedConstraints:
 def _stiffening(mass: Matrix, jacobian: Matrix) -> Matrix:
     """Return J^T rho with masses of the size that A has along each constraint.
 
-    Massless coordinates have those that the constraints give them which contain others.
+    Massless coordinates have those that the constraints give them which contain others, or else the largest.
     """
     sizes, lengths = np.abs(jacobian), np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
     while True:
@@ -89,7 +89,8 @@ def _stiffening(mass: Matrix, jacobian: Matrix) -> Matrix:
         if not given.any():
             break
         lengths = lengths + given
-    peaks = np.where(peaks > 0, peaks, or_one(sizes.max(axis=-1, initial=0.0)))
+    largest = or_one(lengths.max(axis=-1, keepdims=True))
+    peaks = np.where(peaks > 0, peaks, or_one(sizes.max(axis=-1, initial=0.0)) / largest)
     return 2 / peaks[..., None, :] ** 2 * np.matrix_transpose(jacobian)
 
 

@@ -47,3 +47,9 @@ def test_several_states_with_a_singular_mass_matrix_have_each_its_own_metric():
     together = weighted_constraints(masses, jacobians).singular_values()
     alone = [weighted_constraints(*each).singular_values() for each in zip(masses, jacobians, strict=True)]
     np.testing.assert_allclose(together, alone, rtol=1e-14)
+
+
+@pytest.mark.parametrize("mass", [1.0, 1e-27])
+def test_massless_coordinates_apart_from_others_have_the_largest_mass(mass):
+    found = weighted_constraints(np.diag([mass, 0.0]), np.diag([0.0, 2.0]))
+    np.testing.assert_allclose(found.stiffening, mass * np.diag([0.0, 1.0]), rtol=1e-14)
