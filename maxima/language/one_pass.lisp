@@ -88,7 +88,7 @@
          (or (get x dots)
              (setf (get x dots) ($name_around (concatenate 'string (characters-of-name dots) "(") x ")"))))
         (($listp x) (mlist-of (mapcar #'(lambda (each) ($dotted dots each)) (cdr x))))
-        (($mapatom x) (list (list dots 'simp) x)) ; as it is written, in index notation
+        (($subvarp x) (list (list dots 'simp) x)) ; as it is written, in index notation
         (t ($refuse '$dot_of_expression (characters-of-name dots) x))))
 
 (defun $initial (x)
