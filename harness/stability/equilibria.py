@@ -209,8 +209,8 @@ def find_equilibria(
     Raises
     ------
     HolonomError
-        The equations contain the time, a control has no value, forces jump with the sign of a velocity, or an
-        orientation is zero at a place where the constraints hold.
+        The equations contain the time, a control has no value, forces jump with the sign of a velocity, a mass is
+        negative, or an orientation is zero at a place where the constraints hold.
     """
     reacting = tuple(sign for sign in problem.signs if sign.by is DependsOn.REACTION)
     require_analytic(replace(problem, signs=reacting, tables=()))
@@ -565,7 +565,9 @@ class _Search:
             return None
         try:
             tangent = self._tangent(here, q)
-        except HolonomError:
+        except HolonomError as error:
+            if error.kind is ErrorKind.MASS_INDEFINITE:
+                raise
             return None
         gradients = np.linalg.norm(here["constraint_by_q"] * self._sizes, axis=1)
         shrunk = np.any(gradients < NEARLY_SINGULAR * self._gradients)

@@ -230,6 +230,13 @@ def test_redundant_constraints():
     assert stabilities(found) == [Stability.STABLE, Stability.UNSTABLE]
 
 
+def test_negative_masses_are_refused():
+    text = "system : holonomic_system(coordinates = [x], kinetic_energy = -dot(x)^2, potential_energy = x^2)$"
+    with pytest.raises(HolonomError) as refused:
+        holonom.system(text + "scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$").equilibria()
+    assert refused.value.kind is ErrorKind.MASS_INDEFINITE
+
+
 def test_equations_with_the_time_are_refused():
     with pytest.raises(HolonomError) as refused:
         of_particle("forces = [-x, sin(t) - y]").equilibria()
