@@ -23,6 +23,8 @@ from .derivation import CheckedDerivation
 from .digits import WORKING_DIGITS
 from .evaluation import Steps
 from .independent import IndependentEquations
+from .normal_form import is_identically_zero
+from .ranks import Elimination
 from .relations import NotComparable, list_of, numbered, solved_for
 from .system import MechanicalSystem, exact, history, initial
 from .verdict import Comparison, Pair
@@ -337,9 +339,14 @@ def determined_initial_values(checked: CheckedScene, relations: Relations) -> tu
             expected=_listed(initial(x).name for x in names),
         )
     fixed = {sp.Symbol(left, real=True): exact(r.right) for left, r in zip(lefts, relations, strict=True)}
+    kinds = (
+        (checked.system.coordinates, checked.beginning.system.constraints),
+        (checked.system.velocities, checked.beginning.constraint_derivatives),
+    )
     residuals = [
-        *_for_all_states(checked, checked.system.coordinates, checked.beginning.system.constraints, fixed),
-        *_for_all_states(checked, checked.system.velocities, checked.beginning.constraint_derivatives, fixed),
+        residual
+        for symbols, of in kinds
+        for residual in _determining(checked, symbols, list(_for_all_states(checked, symbols, of, fixed)), fixed)
     ]
     always = Comparison(
         tuple(_vanishing(translatable("constraint"), residuals)),
@@ -372,6 +379,33 @@ def _for_all_states(
         others = (present - numbers) | (residual.free_symbols - constants)
         if present & known and not (present & numbers and others):
             yield residual
+
+
+def _determining(
+    checked: CheckedScene, symbols: Iterable[sp.Symbol], residuals: Sequence[sp.Expr], fixed: Definitions
+) -> Sequence[sp.Expr]:
+    """Return the residuals except conditions on given values.
+
+    Conditions are left where those that vanish identically determine the fixed values. (12) satisfies all of them.
+    """
+    present = {symbol for residual in residuals for symbol in residual.free_symbols}
+    unknown = [symbol for symbol in symbols if symbol in present and initial(symbol) in fixed]
+    if len(residuals) <= len(unknown):
+        return residuals
+    put_in = {r: r.xreplace(checked.control_law).xreplace(checked.start).xreplace(fixed) for r in residuals}
+    identities = [residual for residual, value in put_in.items() if is_identically_zero([value])]
+    return identities if _rank(checked, identities, unknown) == len(unknown) else residuals
+
+
+def _rank(checked: CheckedScene, residuals: Sequence[sp.Expr], unknown: Sequence[sp.Symbol]) -> int:
+    """Return the number of independent gradients in the initial configuration."""
+    gradients = [r.diff(symbol).xreplace(checked.configuration) for r in residuals for symbol in unknown]
+    with mp.workdps(WORKING_DIGITS):
+        values = Steps(gradients).at({})
+        if None in values:
+            return 0
+        rows = [values[place : place + len(unknown)] for place in range(0, len(values), len(unknown))]
+        return Elimination([{k: x for k, x in enumerate(row) if x != 0} for row in rows]).rank
 
 
 def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mapping[sp.Symbol, list[sp.Expr]]:

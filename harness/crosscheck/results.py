@@ -39,6 +39,7 @@ from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_
 from .taylor import Polynomial, Taylor
 
 LOST = 10  # digits that a derivative in rounded numbers may lose
+FEWEST = 5  # digits that show a wrong coefficient
 CORRECTED = mp.mpf("1e-7")  # of the largest initial value, by which given ones may be corrected
 Content = Mapping[str, Any]
 
@@ -101,7 +102,7 @@ def _unchecked(kind: Publication, content: Content) -> str:
         case Publication.EQUILIBRIA:
             return "not checked: starts, more, singular, regular"
         case Publication.SERIES:
-            return "not checked: radius, switch"
+            return "not checked: radius, switch, truncation error, continuation"
     return ""
 
 
@@ -125,6 +126,8 @@ def _verify_series(description: Description, content: Content) -> CheckResult:
     if scene.servo_trees:
         return CheckResult(Verdict.NOTHING, None, None, "the forces that servo-constraints find are not in the series")
     digits = digits_of(content["arithmetic"], LOST)
+    if digits < FEWEST:
+        return CheckResult(Verdict.UNDECIDED, None, None, "the coefficients have too few digits")
     try:
         wrong = differing(partial(_values, DescribedMotion(description, scene), content), digits)
     except IrregularPoint:
@@ -147,8 +150,20 @@ def _values(motion: DescribedMotion, content: Content) -> Iterator[ComparedValue
     for row in (row for each in rows for row in each.values()):
         yield ComparedValue("order", mp.mpf(len(row) - 1), mp.mpf(order), mp.zero)
     yield from compared_series(motion, series, _largest_correction(series), order)
+    if series.at is not None:
+        yield from _sums(series, {name: numbers(row) for each in rows for name, row in each.items()})
     if content["sensitivities"]:
         yield from _derivatives(motion, content)
+
+
+def _sums(series: SeriesDocument, coefficients: Mapping[str, list[mp.mpf]]) -> Iterator[ComparedValue]:
+    """Yield the sums of the series at a given time."""
+    step, given = number(series.at.t) - number(series.t0), series.at.values
+    missing = coefficients.keys() ^ given.keys()
+    yield ComparedValue("quantities without a sum, or without a series", mp.mpf(len(missing)), mp.zero, mp.zero)
+    for name, row in coefficients.items():
+        terms = [c * step**k for k, c in enumerate(row)]
+        yield ComparedValue(f"{name} at t", number(given[name]), mp.fsum(terms), mp.fsum(map(abs, terms)))
 
 
 def _largest_correction(series: SeriesDocument) -> tuple[str, str] | None:

@@ -29,6 +29,9 @@ MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounde
 NumberTexts = tuple[NumberText, ...]
 
 
+ARITHMETIC = r"^(exact|double|extended|quadruple|(bigfloat|heyoka)\([1-9][0-9]*\))$"
+
+
 @dataclass(frozen=True)
 class Continuation:
     """States of a motion at the centres of its expansions, the last at the final time."""
@@ -48,7 +51,7 @@ class MotionSeries(Shown):
     title: str = entry("Title of the scene.")
     order: int = entry("Highest power of t - t0.", minimum=2)
     t0: NumberText = entry("The initial time.")
-    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).")
+    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).", pattern=ARITHMETIC)
     coordinates: Mapping[str, NumberTexts] = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
     multipliers: Mapping[str, NumberTexts] = entry("Coefficients of the multipliers, by name.")
     constraint_forces: Mapping[str, NumberTexts] = entry("Lambda[s]; empty where the scene does not observe them.")
@@ -158,7 +161,7 @@ class SeriesDocument:
     )
     order: int = entry("Highest power of t - t0.", minimum=2)
     t0: Published = entry("The initial time.")
-    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).")
+    arithmetic: str = entry("exact, bigfloat(D), double, extended, quadruple or heyoka(D).", pattern=ARITHMETIC)
     coordinates: PublishedSeries = entry("Coefficients of (t - t0)^0 ... (t - t0)^order, by name.")
     multipliers: PublishedSeries = entry("Coefficients of the multipliers, by name.")
     constraint_forces: PublishedSeries = entry("Lambda[s]; empty where the scene does not observe them.")

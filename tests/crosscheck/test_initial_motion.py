@@ -154,3 +154,19 @@ scene : holonomic_scene(system, control_law = [{law}], time_span = [{start}, 3],
     powers = sp.Poly(sp.expand(values.xreplace({names["t"]: names["t"] + start})), names["t"])
     assert [sp.Rational(x) for x in expanded["x"][:4]] == [powers.coeff_monomial(names["t"] ** k) for k in range(4)]
     assert not scene.check().disagreements
+
+
+@pytest.mark.parametrize("wrong", [["Multiply", 2, "dot(x)_0"], ["Multiply", "dot(x)_0", "x_0"], "dot(z)_0"])
+def test_given_values_that_the_constraints_bind_too(wrong):
+    """dot(x) = 0 follows, and is given; (19) has dot(y) in terms of it. The wrong forms have its value, too."""
+    scene = holonom.system("""
+system : holonomic_system(coordinates = [x, y, z], controls = [u], constraints = [x - u*y, x + y - u],
+  kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2)$
+scene : holonomic_scene(system, control_law = [u = 1 + t^2],
+  initial_state = [x = 1/2, y = 1/2, dot(x) = 0, z = 0, dot(z) = 0])$""")
+    checked = checked_of(scene.record, scene.description, 0)
+    fixed = equation(checked, "determined_initial_values")
+    assert verdict(checked, fixed, fixed.relations) is not Verdict.DISAGREES
+    assert [str(relation.left) for relation in fixed.relations] == ["dot(y)_0"]
+    relation = Relation(fixed.relations[0].left_tree, wrong)
+    assert verdict(checked, fixed, (relation,)) is Verdict.DISAGREES

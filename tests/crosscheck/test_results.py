@@ -14,7 +14,7 @@ from holonom.crosscheck.report import Verdict
 from holonom.crosscheck.results import read_result, verify_result
 from holonom.failures import ErrorKind, HolonomError
 from holonom.formats import Publication, published
-from holonom.series.power_series import series_document
+from holonom.series.power_series import series_document, values_at
 
 PENDULUM = """system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g],
   kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2, potential_energy = [gravity = m*g*y],
@@ -63,6 +63,10 @@ def along(scene):
     return published(Publication.LINEARIZED_ALONG, scene.linearize_along(samples=3).document())
 
 
+def with_sums(series):
+    return series_document(series, values_at(series, Fraction(1, 100)))
+
+
 RESULTS = {
     "motion with prescribed reactions": (PRESCRIBED, along),
     "equilibria with prescribed reactions": (
@@ -88,7 +92,7 @@ RESULTS = {
         STIFF,
         lambda scene: published(Publication.EQUILIBRIA, scene.equilibria().document()),
     ),
-    "series": (PUSHED, lambda scene: series_document(scene.series(order=6, sensitivities=["m", "x"]))),
+    "series": (PUSHED, lambda scene: with_sums(scene.series(order=6, sensitivities=["m", "x"]))),
 }
 VERIFIED = {  # entries of each document that a verdict is about
     "motion with prescribed reactions": ("times", "points", "C", "transition"),
@@ -102,7 +106,7 @@ VERIFIED = {  # entries of each document that a verdict is about
     "servo-constraints": ("point", "basis", "A", "C", "eigenvalues", "modes"),
     "equations of degree five": ("count",),
     "equilibria": ("count", "complete", "found"),
-    "series": ("order", "t0", "coordinates", "multipliers", "controls", "sensitivities"),
+    "series": ("order", "t0", "coordinates", "multipliers", "controls", "sensitivities", "at"),
     "stiff and slow": ("eigenvalues", "frequencies", "damping"),
     "stiff and slow equilibrium": ("found",),
 }  # fmt: skip
@@ -184,6 +188,17 @@ def test_a_list_of_another_length_disagrees():
         for wrong in (content[name][:-1], [*content[name], content[name][0]]):
             assert verify_result(description, content | {name: wrong}).verdict is Verdict.DISAGREES, name
     assert verify_result(description, content | {"C": [*content["C"][:-1], [0.0]]}).verdict is Verdict.DISAGREES
+
+
+def test_a_series_of_few_digits_is_undecided(tmp_path):
+    scene = holonom.system(PENDULUM)
+    content = json.loads(json.dumps(series_document(scene.series(order=6, digits=12))))
+    assert verify_result(scene.description, content).verdict is Verdict.UNDECIDED
+    file = tmp_path / "series.json"
+    file.write_text(json.dumps(content | {"arithmetic": "rounded"}))
+    with pytest.raises(HolonomError) as refused:
+        read_result(file)
+    assert refused.value.kind is ErrorKind.NOT_A_DOCUMENT
 
 
 @pytest.mark.parametrize("name", ["d(lambda1, m)", "d(u, m)"])
