@@ -36,6 +36,7 @@ from .taylor import Polynomial, Taylor
 
 PERTURBATIONS = 3  # of all coefficients, by which the effect of rounding them is found
 DIGITS_OF = {"double": 15, "extended": 18, "quadruple": 33}
+SMALL_STEP = mp.mpf(2) ** -20  # of the largest acceleration
 LOST = 8  # digits that a rounded coefficient may lose on its way into the equations
 Complete = Callable[[Values, list[Polynomial]], Values]  # the series with the powers that follow from them
 SERIES, SERVO = "power series", "servo-constraints, along the motion"
@@ -316,10 +317,11 @@ def _continued(
 def _slopes(motion: DescribedMotion, curve: Values, rows: Values, multipliers: list[Polynomial]) -> list[list[mp.mpf]]:
     """Return the columns of 2 A and J at the initial time, one below the other.
 
-    The equations are linear in the accelerations. A step much smaller than these would be rounded away.
+    The equations are linear in the accelerations. A step as large as these changes signs of what begins to move, and
+    a much smaller one is rounded away.
     """
     before = _residuals_at(motion, curve, multipliers, 0)
-    step = max(mp.one, *(abs(row[2]) for row in rows.values()))
+    step = SMALL_STEP * (max((abs(row[2]) for row in rows.values()), default=mp.zero) or mp.one)
     moved = ({name: (*row[:2], row[2] + step)} for name, row in rows.items())
     after = (_residuals_at(motion, curve | each, multipliers, 0) for each in moved)
     return [[(x - y) / step for x, y in zip(each, before, strict=True)] for each in after]

@@ -141,6 +141,14 @@ scene : holonomic_scene(system, initial_state = [x = 1, dot(x) = 0])$""")
     assert [each.found.verdict for each in verify_series(source.description(), found)] == [Verdict.AGREES]
 
 
+def test_series_of_a_friction_that_begins_agree():
+    """Their last powers followed from accelerations of the other sign."""
+    scene = holonom.system("""system : holonomic_system(coordinates = [x, y], kinetic_energy = dot(x)^2 + dot(y)^2,
+  potential_energy = 5*x^2 + 4*y^2, forces = [drag = [0, -signum(dot(y))]])$
+scene : holonomic_scene(system, initial_state = [x = 1, y = 1, dot(x) = 0, dot(y) = 0], time_span = [0, 1])$""")
+    assert not scene.check().disagreements
+
+
 def test_a_parameter_that_no_motion_contains_needs_no_value():
     """Omega belongs to an effect that the scene leaves out; the check of an example ended with an error."""
     report = holonom.system("""
