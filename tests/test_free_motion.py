@@ -339,6 +339,7 @@ def test_kinked_forces_and_laws_in_parts_were_refused_a_verdict(write_scene, sce
         ("if t < 1 then 1 else 1", 2, "free"),
         ("if t < 1 then 1 else 1 + (t - 1)^3", "1/2", "free"),
         ("if t < 1 then 1 else 1 + (t - 1)^3", 2, "undecided"),  # it is not free from t = 1 on
+        ("table([[0, 1], [1, 1], [2, 1]])", 2, "undecided"),  # its polynomials are the same one
     ],
 )
 def test_laws_in_parts_left_the_motion_open_at_the_initial_state(write_scene, law, end, verdict):
