@@ -7,7 +7,7 @@ example is measured in them after Maxima.
 import json
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
@@ -176,9 +176,16 @@ def test_four_systems_are_the_same_in_all_units(name, units, engine):
     assert_same(written_seen(name, engine, SI), written_seen(name, engine, SYSTEMS[units]))
 
 
+def example(file: str, scene: str, engine: EngineName) -> MotionProblem:
+    """The motion, but of 2,250 periods the first 45 where all would take minutes."""
+    motion = problem(file, scene)
+    short = file == "hard/stiff_spring.mac" and engine is EngineName.ROBUST
+    return replace(motion, time_span=("0", "0.2")) if short else motion
+
+
 @cache
 def example_in_si(file: str, scene: str, engine: EngineName) -> Seen:
-    return seen(problem(file, scene), engine, SI)
+    return seen(example(file, scene, engine), engine, SI)
 
 
 @pytest.mark.long
@@ -189,7 +196,8 @@ def test_every_example_is_the_same_in_all_units(file, scene, engine, units):
     others, by_default = SYSTEMS[units], example_in_si(file, scene, EngineName.AUTO)
     if engine is EngineName.TAYLOR and by_default.samples and set(by_default.told[0]) == {engine}:
         pytest.skip("by default, this engine integrates all of the motion")
-    known, found = example_in_si(file, scene, engine), seen(in_units(problem(file, scene), others), engine, others)
+    known = example_in_si(file, scene, engine)
+    found = seen(in_units(example(file, scene, engine), others), engine, others)
     assert_same(known, found, (10 if file in DIGIT_LOST else 1) * AGREEMENT)
 
 

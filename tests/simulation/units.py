@@ -14,7 +14,7 @@ from holonom.program.motion_problem import DependsOn, MotionProblem
 from holonom.program.motion_program import Call, Expression, Name, Operation, Program, names_in
 from holonom.simulation.matrices import INDEXED
 
-PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "switching"
+PROGRAMS = "motion", "projection", "matrices", "energy", "controls", "outputs", "switching"
 
 
 @dataclass(frozen=True)
@@ -77,6 +77,7 @@ def _of_inputs(problem: MotionProblem, units: Units) -> dict[str, Fraction]:
     units_of = {"t": units.time, **{table.inputs[0]: units.time for table in problem.tables}}
     units_of |= dict.fromkeys(problem.coordinates, units.length)
     units_of |= dict.fromkeys(problem.state[len(problem.coordinates) :], units.length / units.time)
+    units_of |= {f"ddot({name})": units.length / units.time**2 for name in problem.coordinates}
     return units_of | dict.fromkeys(problem.multipliers, units.energy)
 
 
