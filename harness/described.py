@@ -79,6 +79,12 @@ class System:
     )
     orientation_trees: tuple[Tree, ...] = entry("Expressions whose signs no motion changes.", (), key="orientations")
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the quantities and of the initial coordinates."""
+        own = (*self.coordinates, *self.controls, *self.parameters, *self.switches)
+        return (*own, *self.multipliers, *(f"{q}_0" for q in self.coordinates))
+
     @cached_property
     def constraints(self) -> "tuple[Expr, ...]":
         """The g constraints."""

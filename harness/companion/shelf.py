@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..files import write_whole
+from ..typeset.quantities import spelled_apart
 from .chapter import Chapter
 from .pages import environment
 from .stored_results import Results
@@ -128,7 +129,9 @@ class Shelf:
         str
             HTML.
         """
-        return str(environment(self.language).from_string(template).render(self.values(name))).strip()
+        values = self.values(name)
+        with spelled_apart(values["study"].derived.record.system.names if "study" in values else ()):
+            return str(environment(self.language).from_string(template).render(values)).strip()
 
     def _value(self, expression: str, values: Mapping[str, Any]) -> Any:
         return environment(self.language).compile_expression(expression)(**values)

@@ -125,8 +125,8 @@ def _airy(symbol: str) -> tuple[Function, Function]:
     return (
         Function(head, scene, latex, "", [f"{head}Prime", "x"], name, special=True),
         Function(
-            f"{head}Prime", f"airy_d{symbol}i", f"{latex}'", "", _times("x", [head, "x"]), prime, special=True,
-            value=lambda mp, x: getattr(mp, name)(x, derivative=1),
+            f"{head}Prime", f"airy_d{symbol}i", rf"\operatorname{{{latex}}}'", "", _times("x", [head, "x"]), prime,
+            special=True, value=lambda mp, x: getattr(mp, name)(x, derivative=1),
         ),
     )  # fmt: skip
 
@@ -162,7 +162,7 @@ FUNCTIONS = (
     Function("Arcsin", "asin", r"\arcsin", "asin", _root(_square(1, -1))),
     Function("Arccos", "acos", r"\arccos", "acos", _root(_square(1, -1), -1)),
     Function("Arctan", "atan", r"\arctan", "atan", _over(_square(1, 1)), **CHANGING),
-    Function("Arctan2", "atan2", "arctan2", "atan2", arity=2, value=_real("atan2")),
+    Function("Arctan2", "atan2", r"\operatorname{arctan}_{2}", "atan2", arity=2, value=_real("atan2")),
     Function("Arcsec", "asec", "arcsec", "", _root(_times(_square(-1, 1), _times("x", "x")))),
     Function("Arccsc", "acsc", "arccsc", "", _root(_times(_square(-1, 1), _times("x", "x")), -1)),
     Function("Arccot", "acot", "arccot", "", _over(_square(1, 1), -1)),

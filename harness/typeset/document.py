@@ -12,7 +12,7 @@ from ..expression.mathjson import from_sympy
 from ..record import Derivation, Equation, Record, Relation, Scene, System
 from .equations import blocks
 from .latex import latex
-from .quantities import spelled_out, symbol_box
+from .quantities import spelled_apart, spelled_out, symbol_box
 
 WIDTH = 70  # width left of an equation's number, in digits of the article's typeface
 PREAMBLE = r"""% Written by Holonom
@@ -48,11 +48,12 @@ def tex_document(record: Record) -> str:
     str
         Source text of the document, preamble included.
     """
-    sections = [
-        _description(record.system),
-        *map(_derivation, record.derivations),
-        *map(_scene, record.scenes),
-    ]
+    with spelled_apart(record.system.names):
+        sections = [
+            _description(record.system),
+            *map(_derivation, record.derivations),
+            *map(_scene, record.scenes),
+        ]
     return "\n".join(
         [
             PREAMBLE,

@@ -359,7 +359,8 @@ def _of_an_order(letter: str, order: Tree, argument: Tree) -> Box:
 
 
 def _modulus(argument: Tree) -> Box:
-    return bracketed(_set(argument), r"\lvert", r"\rvert")
+    inner = _set(argument)
+    return bracketed(inner, "|", "|") if inner.brackets or inner.height > 1 else bracketed(inner, r"\lvert ", r"\rvert")
 
 
 def _factorial(argument: Tree) -> Box:

@@ -10,7 +10,7 @@ from sympy import Symbol
 from ..record import Equation
 from .equations import latex_equation
 from .mathml import mathml
-from .quantities import RATE, name_box
+from .quantities import RATE, name_box, spelled_apart
 
 WIDTH = 90  # digits of a formula's typeface that fit a notebook's cell
 
@@ -50,7 +50,14 @@ def equations_html(equations: Iterable[Equation]) -> str:
     str
         HTML.
     """
-    return "\n".join(_html_parts(equations))
+    equations = list(equations)
+    with spelled_apart(_names(equations)):
+        return "\n".join(_html_parts(equations))
+
+
+def _names(equations: Iterable[Equation]) -> set[str]:
+    sides = (side for equation in equations for each in equation.relations for side in (each.left, each.right))
+    return {symbol.name for side in sides for symbol in side.free_symbols}
 
 
 def _html_parts(equations: Iterable[Equation]) -> Iterator[str]:
@@ -72,5 +79,7 @@ def equations_latex(equations: Iterable[Equation]) -> str:
     str
         Displayed formulas between ``$$``.
     """
-    formulas = (formula for equation in equations if equation.relations for formula in latex_equation(equation, inf))
-    return "\n".join(f"$$\n{formula}\n$$" for formula in formulas)
+    equations = list(equations)
+    with spelled_apart(_names(equations)):
+        formulas = (formula for each in equations if each.relations for formula in latex_equation(each, inf))
+        return "\n".join(f"$$\n{formula}\n$$" for formula in formulas)

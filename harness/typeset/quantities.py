@@ -1,11 +1,15 @@
 """Typeset names of quantities with dots and indices.
 
-``dot(q1)_0`` is q with a dot and the indices 1 and 0.
+``dot(q1)_0`` is q with a dot and the indices 1 and 0. `spelled_apart` spells names that would look the same, as ``a1``
+and ``a_1``.
 """
 
 import re
 import unicodedata
-from functools import cache
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 from sympy.core.alphabets import greeks
 from sympy.printing.latex import tex_greek_dictionary
@@ -16,10 +20,40 @@ RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
 UNDERSCORE = r"\_"  # of a name that is nothing else
 NUMBERED = re.compile(r"([^\W\d]+?)(\d*)")
 OPEN = {"phi": r"\varphi", "th": r"\theta"}  # the shape that mechanics writes, and its shorthand
+CONSTANTS = frozenset({"e", r"\pi"})  # in LaTeX: what no quantity is to look like
+SPELLED: ContextVar[frozenset[str]] = ContextVar("spelled", default=frozenset())
 GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
 
-@cache
+@contextmanager
+def spelled_apart(names: Iterable[str]) -> Iterator[None]:
+    """Spell out names that would look like others, or like a constant.
+
+    Initial values ``x_0`` keep their index if the name of x is not spelled out.
+
+    Parameters
+    ----------
+    names : iterable of str
+        All names of a document.
+
+    Yields
+    ------
+    None
+        While the names are spelled out.
+    """
+    alike: dict[str, set[str]] = defaultdict(set)
+    own = set(names)
+    for name in own:
+        alike[name_box(name).latex].add(name)
+    apart = {name for latex, same in alike.items() if len(same) > 1 or latex in CONSTANTS for name in same}
+    initials = {f"{name}_0" for name in own - apart}
+    token = SPELLED.set(frozenset(apart - initials))
+    try:
+        yield
+    finally:
+        SPELLED.reset(token)
+
+
 def name_box(name: str, dots: int = 0) -> Box:
     """Return a quantity under its dots, with the indices in its name.
 
@@ -55,9 +89,11 @@ def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
     -------
     Box
     """
-    if name == "A_inverse":
+    if name in SPELLED.get():
+        return _with_indices(dotted(_spelled(name), dots), indices)
+    if name == "A_inverse" and indices:
         return above(symbol_box("A"), beside(*indices))
-    if name == "christoffel":
+    if name == "christoffel" and len(indices) == 3:
         return _christoffel(*indices)
     if name == "delta" and len(indices) == 2:
         return below(above(symbol_box("delta"), indices[0]), indices[1])
@@ -115,6 +151,11 @@ def spelled_out(letter: str) -> str:
             return name.capitalize().replace("Lamda", "Lambda")
         case _:
             return letter
+
+
+def _spelled(name: str) -> Box:
+    parts = UNDERSCORE.join(rf"\text{{{part}}}" if part else "" for part in name.replace("%", "").split("_"))
+    return word(f"{{{parts}}}", len(name))
 
 
 def _index(part: str) -> Box:

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 from reading import letter, sides
 from refusing import failing
-from sympy import Float, Function, Indexed, IndexedBase, Rational, Symbol, cos, exp, lambdify, sin, sqrt, symbols
+from sympy import Abs, Float, Function, Indexed, IndexedBase, Rational, Symbol, cos, exp, lambdify, sin, sqrt, symbols
 
 from holonom.expression.presentation import presented
 from holonom.failures import ErrorKind
 from holonom.record import Record, Relation, derived_record
 from holonom.typeset.formula import formula_box
 from holonom.typeset.latex import latex, latex_relation, latex_tree
+from holonom.typeset.quantities import spelled_apart
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 x, y, q1, u, t, m = symbols("x y q1 u t m", real=True)
@@ -121,10 +122,37 @@ def test_names_are_letters_with_dots_and_indices(name, written):
         (Float("1.25e-7"), r"1.25 \cdot 10^{-7}"),
         (Float(-0.5) * x, "- 0.5 x"),
         (2**x * 3**y, r"2^{x} \cdot 3^{y}"),
+        (Abs(x), r"\lvert x\rvert"),
+        (y * Abs(sin(x + 1)), r"y \bigl| \sin (1 + x) \bigr|"),
     ],
 )
 def test_expressions_look_as_on_paper(expression, written):
     assert latex(expression) == written
+
+
+@pytest.mark.parametrize(
+    ("names", "spelled"),
+    [
+        (["x", "x0", "x_0"], {"x0"}),
+        (["x", "x_0"], set()),
+        (["a1", "a_1", "a1_0", "a_1_0"], {"a1", "a_1", "a1_0", "a_1_0"}),
+        (["e", "pi", "m"], {"e", "pi"}),
+        (["th", "theta", "dot(th)"], {"th", "theta"}),
+        (["_", "__"], {"_", "__"}),
+    ],
+)
+def test_names_that_look_alike_are_spelled_out(names, spelled):
+    alone = {name: latex(Symbol(name, real=True)) for name in names}
+    with spelled_apart(names):
+        apart = {name: latex(Symbol(name, real=True)) for name in names}
+    assert {name for name in names if apart[name] != alone[name]} >= spelled - {"_"}
+    assert len(set(apart.values())) == len(names)
+    assert {name: latex(Symbol(name, real=True)) for name in names} == alone
+
+
+def test_arrays_are_no_names_of_quantities():
+    """A parameter called christoffel ended in an internal error, and A_inverse looked as A."""
+    assert len({latex(Symbol(name, real=True)) for name in ("A", "A_inverse", "christoffel", "delta")}) == 4
 
 
 def test_what_no_record_holds_is_refused():

@@ -1,10 +1,12 @@
 """MathML is well-formed, and in the part of it that browsers show without help."""
 
+import re
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 import pytest
 
+from holonom.expression.functions import FUNCTIONS
 from holonom.typeset.latex import CORRECTION, latex_marked, latex_tree
 from holonom.typeset.mathml import inline_mathml, mathml
 
@@ -60,6 +62,19 @@ def test_marks_are_classes():
 def test_a_sign_behind_an_equals_sign_is_that_of_its_term():
     signs = [sign.get("form") for sign in elements(mathml("a = - b - (- c)"), "mo") if sign.text == "−"]
     assert signs == ["prefix", None, "prefix"]
+
+
+@pytest.mark.parametrize("function", FUNCTIONS, ids=lambda function: function.head)
+def test_every_function_has_a_name(function):
+    """Of atan2 it was empty, which ended in an internal error."""
+    formula = mathml(latex_tree([function.head, *["x", "y"][: function.arity]]))
+    assert all(element.text for kind in ("mo", "mi") for element in elements(formula, kind))
+    assert not re.search("vert", "".join(ElementTree.fromstring(formula).itertext()))
+
+
+def test_bars_around_brackets_are_bars():
+    formula = mathml(latex_tree(["Abs", ["Sin", ["Add", "x", 1]]]))
+    assert [sign.text for sign in elements(formula, "mo")].count("|") == 2
 
 
 def test_what_is_not_well_formed_is_refused():
