@@ -36,6 +36,7 @@ DIGITS = 7  # of results in double precision, in which they have to agree
 SHAKEN, SHAKES = 1e-14, 4  # relative changes of values, whose effect is that of rounding errors, and their number
 LARGER = 100  # rounding errors, in terms of that effect
 ROUNDED = 1e-6  # of the largest terms: sizes of rounding errors, to `DIGITS`
+ROUNDED_PLACE = 1e-12  # of the largest coordinate: what may be rounding
 EXACT_DIGITS = 60  # in which exact values are put into the equations
 SWITCHING = sp.sign, sp.Abs, sp.Heaviside, sp.Piecewise, sp.Max, sp.Min
 NEARBY, NEARBY_DIGITS = mp.mpf("1e-60"), 150  # displacement to a limit, and digits there
@@ -244,7 +245,7 @@ class DescribedEquations:
         dict of str to ndarray
         """
         names, function = self._function
-        found = function(*(point[name] for name in names))
+        found = np.array(function(*(point[name] for name in names)), dtype=float)
         return self._arranged(found) if np.isfinite(found).all() else self.at(point)
 
     @cached_property
@@ -284,6 +285,46 @@ class DescribedEquations:
         """
         found = self.motion.reactions.at(Taylor(0), mp.mpf(t), self.motion.parameters())
         return {name: float(row[0]) for name, row in found.items()}
+
+    @cached_property
+    def span(self) -> float:
+        """Length of the time span, one without it."""
+        given = self.motion.scene.span_trees
+        first, last = (float(self.motion.number_of(each)) for each in given or (0, 1))
+        return last - first or 1.0
+
+    def scales(self, points: Sequence[Mapping[str, float]]) -> dict[str, Vector]:
+        """Return sizes of the quantities of each group, by some points.
+
+        A coordinate is as large as at one of the points or initially, or as its velocity takes it in the time span. If
+        it is zero or rounding there, it is as large as the largest. Multipliers are as large as the largest. Controls
+        are as large as their derivatives make them.
+
+        Parameters
+        ----------
+        points : sequence of mapping of str to float
+            Values of names.
+
+        Returns
+        -------
+        dict of str to ndarray
+            Sizes of q, v, a, lambda, u, du and ddu, in their order.
+        """
+        span = self.span
+        initial = {name: float(self.motion.number_of(x)) for name, x in self.motion.scene.initial_state.trees.items()}
+
+        def largest(name: str) -> float:
+            return max((abs(point[name]) for point in (*points, initial) if name in point), default=0.0)
+
+        found = {group: np.array([largest(name) for name in self.names(group)]) for group in self._groups}
+        q = np.where(found["q"] > 0, found["q"], span * found["v"])
+        largest_q = q.max(initial=0.0) or 1.0
+        q = np.where(q > ROUNDED_PLACE * largest_q, q, largest_q)
+        u = found["u"] + span * found["du"] + span**2 * found["ddu"]
+        reactions = np.full(len(found["lambda"]), found["lambda"].max(initial=0.0))
+        return {
+            "q": q, "v": q / span, "a": q / span**2, "lambda": reactions, "u": u, "du": u / span, "ddu": u / span**2
+        }  # fmt: skip
 
     def law(self, t: float) -> dict[str, float]:
         """Return the controls with a law and their derivatives at a time.
@@ -421,9 +462,14 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     solved = [name for name in outputs if name in reactions]
     yield Condition("outputs", outputs != [*q, *v, *solved, *equations.outputs])
     yield from _conditions_on_point(equations, content)
-    here = equations.at(point)
-    N, mass = _matrix(content["basis"], m), here["mass"]
+    given_here, scales, span = equations.at(point), equations.scales([point]), equations.span
+    here, length = _in_natural_units(given_here, scales, span)
+    mass, N = here["mass"], _matrix(content["basis"], m) * length / scales["q"][:, None]
     rates, rows = (np.hstack([_matrix(content[a], 2 * m), *_parts(content, b)]) for a, b in ("AB", "CD"))
+    units = np.concatenate([np.repeat([length, length / span], m), *(scales[each] for each in ("u", "du", "ddu"))])
+    rates = rates * np.where(units, units, 1.0) / np.repeat([length / span, length / span**2], m)[:, None]
+    own_units = [scales["lambda"][reactions.index(name)] or 1.0 for name in solved] + [1.0] * len(equations.outputs)
+    rows = rows * np.where(units, units, 1.0) / np.concatenate([scales["q"], scales["v"], own_units])[:, None]
     width = rows.shape[1]
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
@@ -434,7 +480,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     yield Condition("N^T mass N = 1", N.T @ mass @ N - np.eye(m))
     yield Condition("basis", Q[:, :m] - N, np.abs(N))
     for name, rows_of, state in (("coordinates", Q, xi), ("velocities", V, eta)):
-        size = 1 + _product_sizes(N.T @ mass, rows_of)
+        size = np.abs(state) + _product_sizes(N.T @ mass, rows_of)
         yield Condition(f"tangent coordinates of {name}", N.T @ mass @ rows_of - state, size)
     known = {"q": Q, "v": V, "lambda": solution, **dict(zip(("u", "du", "ddu"), inputs, strict=True))}
     for row in ("constraint", "rate"):
@@ -457,43 +503,76 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     if equations.outputs:
         known |= {"a": accelerations}
         own, size = _deviation(here, "output", known)
-        _, rounding = _deviation(_rounding_errors(equations, point, here), "output", known)
+        errors = _in_natural_units(_rounding_errors(equations, point, given_here), scales, span)[0]
+        _, rounding = _deviation(errors, "output", known)
         given = rows[2 * n + len(solved) :]
         rounding = rounding + LARGER * np.finfo(float).eps * np.max(np.abs(rows))
         size = size + np.abs(given) + 10.0**DIGITS * rounding  # terms that cancel leave rounding errors
         yield Condition("outputs of the scene in C and D", own - given, size)
 
 
+def _in_natural_units(
+    here: Mapping[str, Matrix], scales: Mapping[str, Vector], span: float
+) -> tuple[dict[str, Matrix], float]:
+    """Return gradients and masses where all quantities and the time span are one.
+
+    Also return the unit of xi, the length in the mass metric of what moves most.
+    """
+    orders = {"rate": 1, "acceleration": 2}
+    found = {
+        name: matrix * np.where(scales[group], scales[group], 1.0) * span ** orders.get(row, 0)
+        for name, matrix in here.items()
+        for row, by, group in [name.partition("_by_")]
+        if by
+    }
+    metric = np.outer(scales["q"], scales["q"])
+    length = float(np.sqrt(np.max(np.abs(metric * here["mass"]), initial=0.0))) or 1.0
+    found["mass"] = metric * here["mass"] / length**2
+    found["mass_rate"] = metric * here["mass_rate"] * span / length**2
+    return found, length
+
+
 def _conditions_on_rest(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
-    q, *moving = (
-        max((abs(content["point"][name]) for name in equations.names(group)), default=0.0)
-        for group in ("q", "v", "a", "du", "ddu")
-    )
-    changing = max(*moving, equations.changes_with_time)
-    yield Condition("rest", changing if content["at_rest"] else not changing, 1 + q)
+    point, scales = content["point"], equations.scales([content["point"]])
+    here = equations.at(point)
+    forces = sum(np.abs(here[f"equation_by_{group}"]) @ scales[group] for group in ("q", "lambda"))
+    inertia = np.abs(here["equation_by_a"])
+    moved = np.max(forces[:, None] / np.where(inertia, inertia, np.inf), axis=0, initial=0.0)
+    scales["a"] = np.maximum(scales["a"], moved)
+    moving = [
+        abs(point[name]) / (size or 1.0)
+        for group in ("v", "a", "du", "ddu")
+        for name, size in zip(equations.names(group), scales[group], strict=True)
+    ]
+    changing = max((*moving, float(equations.changes_with_time)))
+    yield Condition("rest", changing if content["at_rest"] else not changing)
 
 
 def _conditions_on_point(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
     point, scene = content["point"], equations.motion.scene
-    names = [name for group in ("q", "v", "a", "lambda", "u", "du", "ddu") for name in equations.names(group)]
+    groups = ("q", "v", "a", "lambda", "u", "du", "ddu")
+    names = [name for group in groups for name in equations.names(group)]
     yield Condition("names of the point", set(point) != {"t", *names})
+    law = equations.law(point["t"]) if content["at"] is not None else {}
+    scales = equations.scales([point, law])
+    sizes = {name: size for group in groups for name, size in zip(equations.names(group), scales[group], strict=True)}
     if content["at"] is not None:
         yield Condition("time", content["at"] != point["t"])
-        law = equations.law(point["t"])
-        yield from (Condition(f"law of {name}", point[name] - x, 1 + abs(x)) for name, x in law.items())
+        yield from (Condition(f"law of {name}", point[name] - x, sizes[name]) for name, x in law.items())
         if content["at"] == float(equations.motion.first_time):
             for name, value in scene.initial_state.trees.items():
                 x = float(equations.motion.number_of(value))
-                yield Condition(f"initial value of {name}", point.get(name, x) - x, 1 + abs(x))
+                size = abs(x) + sizes.get(name, 0.0)
+                yield Condition(f"initial value of {name}", point.get(name, x) - x, size)
     for name, x in equations.prescribed(point["t"]).items():
-        yield Condition(f"prescribed {name}", point[name] - x, 1 + abs(x))
+        yield Condition(f"prescribed {name}", point[name] - x, abs(x) + sizes[name])
     here = equations.at(point)
     for row in ("constraint", "rate", "acceleration", "equation"):
-        sizes = sum(
-            np.abs(here[f"{row}_by_{group}"]) @ np.array([abs(point[name]) for name in equations.names(group)])
-            for group in ("q", "v", "a", "lambda", "u", "du", "ddu")
+        size = sum(
+            np.abs(here[f"{row}_by_{group}"]) @ (scales[group] + [abs(point[name]) for name in equations.names(group)])
+            for group in groups
         )
-        yield Condition(f"each {row} at the point", here[row], 1 + sizes)
+        yield Condition(f"each {row} at the point", here[row], size)
 
 
 def _conditions_on_modes(content: Mapping[str, Any], N: Matrix, mass: Matrix) -> Iterator[Condition]:
@@ -668,6 +747,7 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         listed = content["count"] << len(content["reversals"]) + len(roots)
         yield Condition("number of solutions", None if count is None else count - listed)
     known: list[Vector] = []
+    scales = equations.scales([{**each["coordinates"], **each["multipliers"]} for each in found])
     for each in found:
         place = f"{each['name']}: "
         yield Condition(f"{place}names", [*each["coordinates"]] != q or [*each["multipliers"]] != reactions)
@@ -679,18 +759,19 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
             for e in content["reversals"]:
                 if position[np.isin(q, e)] @ other[np.isin(q, e)] < 0:
                     apart = np.where(np.isin(q, e), position + other, apart)
-            same = np.all(np.abs(apart) <= 10.0**-DIGITS * (1 + np.abs(position)))
+            same = np.all(np.abs(apart) <= 10.0**-DIGITS * scales["q"])
             yield Condition(f"{place}another equilibrium", bool(same))
         known.append(position)
         point = {**at_rest, **each["coordinates"], **each["multipliers"]}
         here = equations.at(point)
-        forces = np.abs(list(each["multipliers"].values()))
-        size = 1 + np.abs(here["equation_by_q"]) @ np.abs(position) + np.abs(here["equation_by_lambda"]) @ forces
+        size = sum(np.abs(here[f"equation_by_{group}"]) @ scales[group] for group in ("q", "lambda"))
         yield Condition(f"{place}balance of forces", here["equation"], size)
-        size = 1 + np.abs(here["constraint_by_q"]) @ np.abs(position)
-        yield Condition(f"{place}constraints", here["constraint"], size)
+        yield Condition(f"{place}constraints", here["constraint"], np.abs(here["constraint_by_q"]) @ scales["q"])
         yield from _conditions_on_stability(place, equations, here, point, each)
-        yield from _conditions_on_exact_values(place, equations_at_rest, each)
+        names = [*equations.names("q"), *equations.names("lambda")]
+        sizes = dict(zip(names, np.concatenate([scales["q"], scales["lambda"]]), strict=True))
+        terms = np.concatenate([size, np.abs(here["constraint_by_q"]) @ scales["q"]])
+        yield from _conditions_on_exact_values(place, equations_at_rest, each, sizes, terms)
 
 
 def _conditions_on_orientations(
@@ -708,21 +789,28 @@ def _conditions_on_orientations(
 
 
 def _conditions_on_exact_values(
-    place: str, equations_at_rest: Sequence[sp.Expr], each: Mapping[str, Any]
+    place: str,
+    equations_at_rest: Sequence[sp.Expr],
+    each: Mapping[str, Any],
+    sizes: Mapping[str, float],
+    terms: Vector,
 ) -> Iterator[Condition]:
-    """Put the exact values into the equations, to many digits."""
+    """Put the exact values into the equations, to many digits.
+
+    The sizes are those of the values and of the terms of the equations.
+    """
     given = {**each["coordinates"], **each["multipliers"]}
     exact = {name: read_exact(text) for name, text in each["exact"].items()}
     yield Condition(f"{place}names of exact values", not given.keys() >= exact.keys())
     for name, value in exact.items():
         number = complex("nan") if value is None else complex(value.evalf())
-        yield Condition(f"{place}exact value of {name}", number - given[name], 1 + abs(given[name]))
+        yield Condition(f"{place}exact value of {name}", number - given[name], sizes[name] + abs(given[name]))
     if exact and all(value in exact or not given[value] for value in given):
         with mp.workdps(EXACT_DIGITS):
             numbers = {name: mp.mpf(str(sp.re(value.evalf(EXACT_DIGITS)))) for name, value in exact.items()}
             values = {sp.Symbol(name, real=True): numbers.get(name, mp.zero) for name in given}
             left = Steps(equations_at_rest).real_at(values)
-        size = 10.0 ** (2 * DIGITS - EXACT_DIGITS) * (1 + max(map(abs, given.values())))
+        size = 10.0 ** (2 * DIGITS - EXACT_DIGITS) * terms
         yield Condition(f"{place}equations of exact values", np.array(left, dtype=float), size)
 
 

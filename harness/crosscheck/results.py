@@ -39,6 +39,7 @@ from .report import CheckResult, EquationVerdict, Item, Place, Verdict, verdict_
 from .taylor import Polynomial, Taylor
 
 LOST = 10  # digits that a derivative in rounded numbers may lose
+SUMMED = 100  # rounding errors of a sum, in terms of that of its terms
 FEWEST = 5  # digits that show a wrong coefficient
 CORRECTED = mp.mpf("1e-7")  # of the largest initial value, by which given ones may be corrected
 Content = Mapping[str, Any]
@@ -163,7 +164,8 @@ def _sums(series: SeriesDocument, coefficients: Mapping[str, list[mp.mpf]]) -> I
     yield ComparedValue("quantities without a sum, or without a series", mp.mpf(len(missing)), mp.zero, mp.zero)
     for name, row in coefficients.items():
         terms = [c * step**k for k, c in enumerate(row)]
-        yield ComparedValue(f"{name} at t", number(given[name]), mp.fsum(terms), mp.fsum(map(abs, terms)))
+        size = SUMMED * mp.fsum(map(abs, terms))
+        yield ComparedValue(f"{name} at t", number(given[name]), mp.fsum(terms), size)
 
 
 def _largest_correction(series: SeriesDocument) -> tuple[str, str] | None:

@@ -420,3 +420,40 @@ def test_conditions_without_real_values_are_undecided():
         raise IrregularPoint
 
     assert verify(conditions()).verdict is Verdict.UNDECIDED
+
+
+MEASURED = """m_: {}$ l_: {}$ t_: {}$
+system : holonomic_system(coordinates = [x, y], controls = [u], parameters = [m, g, k],
+  kinetic_energy = m*(dot(x)^2 + dot(y)^2)/2,
+  potential_energy = [gravity = m*g*y, spring = k*(x - l_/3)^2/2], forces = [drag = [-m/t_/5*dot(x), 0]],
+  constraints = [x^2 + y^2 - u^2])$
+swing : holonomic_scene(system, control_law = [u = l_], parameter_values = [m = m_, g = 981/100*l_/t_^2, k = m_/t_^2],
+  initial_state = [x = 3/5*l_, dot(x) = l_/t_/7], initial_guess = [y = -4/5*l_, dot(y) = 0], time_span = [0, 3*t_])$
+"""
+
+
+@pytest.mark.parametrize("units", [("10^-27", "10^-10", "10^-13"), ("10^24", "10^9", "10^7")], ids=["atoms", "planets"])
+def test_wrong_results_in_other_units_disagree(units):
+    """Sizes of one hid wrong results of atoms, and rejected equilibria that are right."""
+    scene = holonom.system(MEASURED.format(*units))
+    linear, still = (
+        json.loads(json.dumps(published(kind, found.document())))
+        for kind, found in (
+            (Publication.LINEARIZED, scene.linearize()),
+            (Publication.EQUILIBRIA, scene.equilibria()),
+        )
+    )
+    changes = [(linear, ["point", name]) for name in ("x", "dot(y)", "lambda1", "u")]
+    changes += [(linear, [name, 0, 0]) for name in ("basis", "mass", "C", "eigenvalues")]
+    changes += [(linear, ["A", 1, 0]), (linear, ["B", "u", 1, 0]), (linear, ["D", "u", 0, 0])]
+    changes += [
+        (still, ["found", 0, group, name]) for group, name in (("coordinates", "x"), ("multipliers", "lambda1"))
+    ]
+    for content, path in changes:
+        assert verify_result(scene.description, content).verdict is Verdict.AGREES
+        wrong = copy.deepcopy(content)
+        part = wrong
+        for key in path[:-1]:
+            part = part[key]
+        part[path[-1]] *= 1.001
+        assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES, path
