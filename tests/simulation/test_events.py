@@ -31,6 +31,7 @@ swung : holonomic_scene(system, parameter_values = [g = 981/100],
 """
 ENGINES = {"taylor": 1e-14, "runge-kutta": 1e-12, "robust": 1e-10}
 FALL = 8 / 9.81  # until a body thrown upward at 4 m/s is back
+BY_STEPS = "robust", "runge-kutta"
 
 
 def thrown(until: str) -> holonom.Scene:
@@ -116,7 +117,7 @@ def test_a_switched_motion_ends_in_a_later_part():
     assert [switching.t for switching in report.switchings] == [1]
 
 
-@pytest.mark.parametrize("engine", ["auto", "robust", "runge-kutta"])
+@pytest.mark.parametrize("engine", ["auto", *(pytest.param(name, marks=pytest.mark.long) for name in BY_STEPS)])
 @pytest.mark.parametrize("belt", ["0", "1/2 + t/4"])
 def test_a_speed_that_friction_stops_ended_no_motion(belt, engine, c_compiler):
     """Braked by 1, the block has the speed of the belt at 1 - t = 0 or 1/2 + t/4."""
@@ -130,7 +131,7 @@ def test_a_speed_that_friction_stops_ended_no_motion(belt, engine, c_compiler):
     assert float(report.t) == pytest.approx(1 if belt == "0" else 0.4, rel=1e-9)
 
 
-@pytest.mark.parametrize("engine", ["auto", "robust", "runge-kutta"])
+@pytest.mark.parametrize("engine", ["auto", *(pytest.param(name, marks=pytest.mark.long) for name in BY_STEPS)])
 def test_a_touch_that_an_engine_takes_for_a_stop_ends_no_motion(engine, c_compiler):
     """It slips from t = 1 on, when x = 1/3, and touches the belt's speed each 2 pi/sqrt(3), where friction ends."""
     report = (
