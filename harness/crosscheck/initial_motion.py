@@ -26,7 +26,7 @@ from .independent import IndependentEquations
 from .normal_form import is_identically_zero
 from .ranks import Elimination
 from .relations import NotComparable, list_of, numbered, solved_for
-from .system import MechanicalSystem, exact, history, initial
+from .system import MechanicalSystem, exact, gradient, history, initial
 from .verdict import Comparison, Pair
 
 STATED_DIGITS = 2
@@ -399,7 +399,7 @@ def _determining(
 
 def _rank(checked: CheckedScene, residuals: Sequence[sp.Expr], unknown: Sequence[sp.Symbol]) -> int:
     """Return the number of independent gradients in the initial configuration."""
-    gradients = [r.diff(symbol).xreplace(checked.configuration) for r in residuals for symbol in unknown]
+    gradients = [slope.xreplace(checked.configuration) for r in residuals for slope in gradient(r, unknown)]
     with mp.workdps(WORKING_DIGITS):
         values = Steps(gradients).at({})
         if None in values:

@@ -399,11 +399,9 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     n, s = len(content["coordinates"]), len(content["A"])
     shapes = {"mass": (n, n), "eigenvalues": (s, 2), "modes": (n, s, 2), "frequencies": (s,), "damping": (s,)}
     yield from conditions_on_shapes(content, shapes)
-    yield from _conditions_on_rest(equations, content)
-    N, mass = (
-        np.array(content["basis"]).reshape(len(content["coordinates"]), -1),
-        equations.at(content["point"])["mass"],
-    )
+    here = equations.at(content["point"])
+    yield from _conditions_on_rest(equations, content, here)
+    N, mass = np.array(content["basis"]).reshape(len(content["coordinates"]), -1), here["mass"]
     yield Condition("mass", np.array(content["mass"]) - mass, _sizes(mass, mass))
     yield from _conditions_on_modes(content, N, mass)
     yield from _conditions_on_ranks(content)
@@ -462,14 +460,15 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     solved = [name for name in outputs if name in reactions]
     yield Condition("outputs", outputs != [*q, *v, *solved, *equations.outputs])
     yield from _conditions_on_point(equations, content)
-    given_here, scales, span = equations.at(point), equations.scales([point]), equations.span
-    here, length = _in_natural_units(given_here, scales, span)
-    mass, N = here["mass"], _matrix(content["basis"], m) * length / scales["q"][:, None]
+    given_here, span = equations.at(point), equations.span
+    natural = {group: _or_one(sizes) for group, sizes in equations.scales([point]).items()}
+    here, length = _in_natural_units(given_here, natural, span)
+    mass, N = here["mass"], _matrix(content["basis"], m) * length / natural["q"][:, None]
     rates, rows = (np.hstack([_matrix(content[a], 2 * m), *_parts(content, b)]) for a, b in ("AB", "CD"))
-    units = np.concatenate([np.repeat([length, length / span], m), *(scales[each] for each in ("u", "du", "ddu"))])
-    rates = rates * np.where(units, units, 1.0) / np.repeat([length / span, length / span**2], m)[:, None]
-    own_units = [scales["lambda"][reactions.index(name)] or 1.0 for name in solved] + [1.0] * len(equations.outputs)
-    rows = rows * np.where(units, units, 1.0) / np.concatenate([scales["q"], scales["v"], own_units])[:, None]
+    units = np.concatenate([np.repeat([length, length / span], m), *(natural[each] for each in ("u", "du", "ddu"))])
+    rates = rates * units / np.repeat([length / span, length / span**2], m)[:, None]
+    pushes = natural["lambda"][[reactions.index(name) for name in solved]]
+    rows = rows * units / np.concatenate([natural["q"], natural["v"], pushes, np.ones(len(equations.outputs))])[:, None]
     width = rows.shape[1]
     Q, V = rows[:n], rows[n : 2 * n]
     solution = np.zeros((len(reactions), width))
@@ -503,7 +502,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     if equations.outputs:
         known |= {"a": accelerations}
         own, size = _deviation(here, "output", known)
-        errors = _in_natural_units(_rounding_errors(equations, point, given_here), scales, span)[0]
+        errors = _in_natural_units(_rounding_errors(equations, point, given_here), natural, span)[0]
         _, rounding = _deviation(errors, "output", known)
         given = rows[2 * n + len(solved) :]
         rounding = rounding + LARGER * np.finfo(float).eps * np.max(np.abs(rows))
@@ -512,7 +511,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
 
 
 def _in_natural_units(
-    here: Mapping[str, Matrix], scales: Mapping[str, Vector], span: float
+    here: Mapping[str, Matrix], natural: Mapping[str, Vector], span: float
 ) -> tuple[dict[str, Matrix], float]:
     """Return gradients and masses where all quantities and the time span are one.
 
@@ -520,29 +519,30 @@ def _in_natural_units(
     """
     orders = {"rate": 1, "acceleration": 2}
     found = {
-        name: matrix * np.where(scales[group], scales[group], 1.0) * span ** orders.get(row, 0)
+        name: matrix * natural[group] * span ** orders.get(row, 0)
         for name, matrix in here.items()
         for row, by, group in [name.partition("_by_")]
         if by
     }
-    metric = np.outer(scales["q"], scales["q"])
+    metric = np.outer(natural["q"], natural["q"])
     length = float(np.sqrt(np.max(np.abs(metric * here["mass"]), initial=0.0))) or 1.0
     found["mass"] = metric * here["mass"] / length**2
     found["mass_rate"] = metric * here["mass_rate"] * span / length**2
     return found, length
 
 
-def _conditions_on_rest(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+def _conditions_on_rest(
+    equations: DescribedEquations, content: Mapping[str, Any], here: Mapping[str, Matrix]
+) -> Iterator[Condition]:
     point, scales = content["point"], equations.scales([content["point"]])
-    here = equations.at(point)
     forces = sum(np.abs(here[f"equation_by_{group}"]) @ scales[group] for group in ("q", "lambda"))
     inertia = np.abs(here["equation_by_a"])
     moved = np.max(forces[:, None] / np.where(inertia, inertia, np.inf), axis=0, initial=0.0)
     scales["a"] = np.maximum(scales["a"], moved)
     moving = [
-        abs(point[name]) / (size or 1.0)
+        abs(point[name]) / size
         for group in ("v", "a", "du", "ddu")
-        for name, size in zip(equations.names(group), scales[group], strict=True)
+        for name, size in zip(equations.names(group), _or_one(scales[group]), strict=True)
     ]
     changing = max((*moving, float(equations.changes_with_time)))
     yield Condition("rest", changing if content["at_rest"] else not changing)
@@ -633,7 +633,7 @@ def _reached(A: Matrix, B: Matrix) -> int:
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / (np.linalg.norm(balanced) or 1.0), B / scale[:, None]
     lengths = np.linalg.norm(B, axis=0)
-    B = B / np.where(lengths, lengths, 1.0)
+    B = B / _or_one(lengths)
     functionals, outside = np.eye(len(A)), B
     while outside.size:
         _, values, right = np.linalg.svd(outside.T)
@@ -691,8 +691,13 @@ def _least(matrix: Matrix, right: Matrix, sizes: Matrix | float = 0.0) -> Matrix
 
 
 def _of_least_squares(matrix: Matrix, right: Matrix, sizes: Vector) -> Matrix:
-    rows = np.where(sizes, sizes, 1.0)[:, None]
+    rows = _or_one(sizes)[:, None]
     return np.linalg.lstsq(matrix / rows, right / rows, rcond=None)[0]
+
+
+def _or_one(sizes: Vector) -> Vector:
+    """Return sizes to divide by, with one in place of zero."""
+    return np.where(sizes, sizes, 1.0)
 
 
 def _sizes(*matrices: Matrix) -> Vector:
@@ -748,6 +753,7 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         yield Condition("number of solutions", None if count is None else count - listed)
     known: list[Vector] = []
     scales = equations.scales([{**each["coordinates"], **each["multipliers"]} for each in found])
+    sizes = dict(zip([*q, *reactions], np.concatenate([scales["q"], scales["lambda"]]), strict=True))
     for each in found:
         place = f"{each['name']}: "
         yield Condition(f"{place}names", [*each["coordinates"]] != q or [*each["multipliers"]] != reactions)
@@ -764,13 +770,12 @@ def conditions_on_equilibria(equations: DescribedEquations, content: Mapping[str
         known.append(position)
         point = {**at_rest, **each["coordinates"], **each["multipliers"]}
         here = equations.at(point)
-        size = sum(np.abs(here[f"equation_by_{group}"]) @ scales[group] for group in ("q", "lambda"))
-        yield Condition(f"{place}balance of forces", here["equation"], size)
-        yield Condition(f"{place}constraints", here["constraint"], np.abs(here["constraint_by_q"]) @ scales["q"])
+        forces = sum(np.abs(here[f"equation_by_{group}"]) @ scales[group] for group in ("q", "lambda"))
+        lengths = np.abs(here["constraint_by_q"]) @ scales["q"]
+        yield Condition(f"{place}balance of forces", here["equation"], forces)
+        yield Condition(f"{place}constraints", here["constraint"], lengths)
         yield from _conditions_on_stability(place, equations, here, point, each)
-        names = [*equations.names("q"), *equations.names("lambda")]
-        sizes = dict(zip(names, np.concatenate([scales["q"], scales["lambda"]]), strict=True))
-        terms = np.concatenate([size, np.abs(here["constraint_by_q"]) @ scales["q"]])
+        terms = np.concatenate([forces, lengths])
         yield from _conditions_on_exact_values(place, equations_at_rest, each, sizes, terms)
 
 

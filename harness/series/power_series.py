@@ -26,10 +26,8 @@ from .radius import LINEAR, POLYNOMIAL, UNPROVED, Radius, described, estimate_ra
 WORKING_DIGITS = 50  # for what is computed from exact coefficients
 MORE_DIGITS = 10  # than the coefficients have, for what is computed from rounded ones
 
-NumberTexts = tuple[NumberText, ...]
-
-
 ARITHMETIC = r"^(exact|double|extended|quadruple|(bigfloat|heyoka)\([1-9][0-9]*\))$"
+NumberTexts = tuple[NumberText, ...]
 
 
 @dataclass(frozen=True)

@@ -206,7 +206,7 @@ def bracketed(inner: Box, opening: str = "(", closing: str = ")") -> Box:
     inner : Box
         Box between the brackets.
     opening, closing : str
-        Brackets in LaTeX.
+        Brackets in LaTeX, or bars.
 
     Returns
     -------
@@ -216,6 +216,8 @@ def bracketed(inner: Box, opening: str = "(", closing: str = ")") -> Box:
         opening, closing = rf"\left{opening} ", rf" \right{closing}"
     elif inner.brackets:
         opening, closing = rf"\bigl{opening} ", rf" \bigr{closing}"
+    elif opening == "|":
+        opening, closing = r"\lvert ", r"\rvert"  # a bar alone opens and closes nothing
     return Box(opening + inner.latex + closing, inner.width + 2 * NARROW, inner.height, brackets=True)
 
 

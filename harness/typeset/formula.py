@@ -359,8 +359,7 @@ def _of_an_order(letter: str, order: Tree, argument: Tree) -> Box:
 
 
 def _modulus(argument: Tree) -> Box:
-    inner = _set(argument)
-    return bracketed(inner, "|", "|") if inner.brackets or inner.height > 1 else bracketed(inner, r"\lvert ", r"\rvert")
+    return bracketed(_set(argument), "|", "|")
 
 
 def _factorial(argument: Tree) -> Box:

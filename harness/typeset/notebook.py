@@ -1,6 +1,6 @@
 """Show equations and symbols in a notebook, as MathML and as LaTeX."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from html import escape
 from math import inf
 from typing import Any
@@ -37,12 +37,12 @@ class TypesetSymbol(Symbol):
         return printer._print_Symbol(Symbol(name))
 
 
-def equations_html(equations: Iterable[Equation]) -> str:
+def equations_html(equations: Sequence[Equation]) -> str:
     """Return equations under their numbers and names, formulas in MathML.
 
     Parameters
     ----------
-    equations : iterable of Equation
+    equations : sequence of Equation
         Equations of a derivation record.
 
     Returns
@@ -50,28 +50,27 @@ def equations_html(equations: Iterable[Equation]) -> str:
     str
         HTML.
     """
-    equations = list(equations)
     with spelled_apart(_names(equations)):
         return "\n".join(_html_parts(equations))
 
 
-def _names(equations: Iterable[Equation]) -> set[str]:
+def _names(equations: Sequence[Equation]) -> set[str]:
     sides = (side for equation in equations for each in equation.relations for side in (each.left, each.right))
     return {symbol.name for side in sides for symbol in side.free_symbols}
 
 
-def _html_parts(equations: Iterable[Equation]) -> Iterator[str]:
+def _html_parts(equations: Sequence[Equation]) -> Iterator[str]:
     for equation in equations:
         yield f"<p><b>({escape(equation.number)})</b> {escape(equation.name)}</p>"
         yield from map(mathml, latex_equation(equation, WIDTH) if equation.relations else ())
 
 
-def equations_latex(equations: Iterable[Equation]) -> str:
+def equations_latex(equations: Sequence[Equation]) -> str:
     """Return equations below each other, as LaTeX for a notebook's Markdown.
 
     Parameters
     ----------
-    equations : iterable of Equation
+    equations : sequence of Equation
         Equations of a derivation record. Those without relations are left out.
 
     Returns
@@ -79,7 +78,6 @@ def equations_latex(equations: Iterable[Equation]) -> str:
     str
         Displayed formulas between ``$$``.
     """
-    equations = list(equations)
     with spelled_apart(_names(equations)):
         formulas = (formula for each in equations if each.relations for formula in latex_equation(each, inf))
         return "\n".join(f"$$\n{formula}\n$$" for formula in formulas)

@@ -10,17 +10,19 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from functools import cache
 
 from sympy.core.alphabets import greeks
 from sympy.printing.latex import tex_greek_dictionary
 
+from ..expression.functions import CONSTANTS
 from .boxes import COMMA, SEMICOLON, Box, above, below, beside, bracketed, digits, dotted, separated, word
 
 RATE = re.compile(r"(d{1,3})ot\((.+)\)(\w*)")
 UNDERSCORE = r"\_"  # of a name that is nothing else
 NUMBERED = re.compile(r"([^\W\d]+?)(\d*)")
 OPEN = {"phi": r"\varphi", "th": r"\theta"}  # the shape that mechanics writes, and its shorthand
-CONSTANTS = frozenset({"e", r"\pi"})  # in LaTeX: what no quantity is to look like
+RESERVED = frozenset(CONSTANTS[name].latex for name in ("Pi", "ExponentialE"))  # what no quantity is to look like
 SPELLED: ContextVar[frozenset[str]] = ContextVar("spelled", default=frozenset())
 GREEK = {name.replace("lamda", "lambda") for name in greeks}
 
@@ -45,7 +47,7 @@ def spelled_apart(names: Iterable[str]) -> Iterator[None]:
     own = set(names)
     for name in own:
         alike[name_box(name).latex].add(name)
-    apart = {name for latex, same in alike.items() if len(same) > 1 or latex in CONSTANTS for name in same}
+    apart = {name for latex, same in alike.items() if len(same) > 1 or latex in RESERVED for name in same}
     initials = {f"{name}_0" for name in own - apart}
     token = SPELLED.set(frozenset(apart - initials))
     try:
@@ -68,7 +70,12 @@ def name_box(name: str, dots: int = 0) -> Box:
     -------
     Box
     """
-    return indexed_box(name, [], dots)
+    return _name_box(name, dots, SPELLED.get())
+
+
+@cache
+def _name_box(name: str, dots: int, spelled: frozenset[str]) -> Box:
+    return _indexed_box(name, [], dots, spelled)
 
 
 def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
@@ -89,7 +96,11 @@ def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
     -------
     Box
     """
-    if name in SPELLED.get():
+    return _indexed_box(name, indices, dots, SPELLED.get())
+
+
+def _indexed_box(name: str, indices: list[Box], dots: int, spelled: frozenset[str]) -> Box:
+    if name in spelled:
         return _with_indices(dotted(_spelled(name), dots), indices)
     if name == "A_inverse" and indices:
         return above(symbol_box("A"), beside(*indices))
@@ -98,7 +109,7 @@ def indexed_box(name: str, indices: list[Box], dots: int = 0) -> Box:
     if name == "delta" and len(indices) == 2:
         return below(above(symbol_box("delta"), indices[0]), indices[1])
     if rate := RATE.fullmatch(name):
-        return indexed_box(rate[2] + rate[3], indices, dots + len(rate[1]))
+        return _indexed_box(rate[2] + rate[3], indices, dots + len(rate[1]), spelled)
     stem, *parts = [part for part in name.replace("%", "").split("_") if part] or [UNDERSCORE]
     letter, number = _symbol_and_number(stem)
     own = [digits(number)] if number else []
