@@ -37,7 +37,7 @@ SLIPS = [
     (r"\b1\b", "2"),
     (r"\b2\*", ""),
     (r"(?<= [+=-] )(?=\w)(?!0)", "2*"),
-    (r"\bu0?\b(?!\[)", "1"),
+    (r"(?<!dot\()\bu0?\b(?!\[)", "1"),  # dot(1) is refused
     (r"\bq(?=[1-3]\b)", "u"),
     *[(rf"(?<=[\[,]){index}(?=[\],])", other) for index, other in zip("sklm", "klms", strict=True)],
     *[(rf"\[{index}\]", f"[{other}]") for index, other in [("rho", "sigma"), ("sigma", "rho")]],

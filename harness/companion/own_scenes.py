@@ -68,7 +68,7 @@ def or_reason(compute: Callable[..., Any], *arguments: Any) -> Any:
         return translatable_error(error)
 
 
-def study(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
+def answers(file: Path, settings: Settings, limits: Limits) -> FileAnswers:
     """Return all answers about a scene file.
 
     Parameters
@@ -116,7 +116,7 @@ def chapters_of_scenes(files: Sequence[Path], settings: Settings, limits: Limits
     """
     found: dict[str, Chapter] = {}
     for prefix, file in _prefixed(files):
-        chapter = Chapter({"study": Run(study, (file, settings, limits))})
+        chapter = Chapter({"answers": Run(answers, (file, settings, limits))})
         found |= {f"{prefix}{name}": chapter for name in PAGES}
     return found
 

@@ -130,7 +130,7 @@ class Shelf:
             HTML.
         """
         values = self.values(name)
-        with spelled_apart(values["study"].derived.record.system.names if "study" in values else ()):
+        with spelled_apart(values["answers"].derived.record.system.names if "answers" in values else ()):
             return str(environment(self.language).from_string(template).render(values)).strip()
 
     def _value(self, expression: str, values: Mapping[str, Any]) -> Any:

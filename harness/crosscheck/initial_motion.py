@@ -365,13 +365,13 @@ def _for_all_states(
 ) -> Iterable[sp.Expr]:
     """Return residuals with fixed symbols that hold for all states.
 
-    They contain no symbol that is fixed for the scene's numbers only.
+    They contain no symbol that is fixed for the scene's numbers only. Without closed forms, each number may be one.
     """
     symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
     numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
     containing = _containing(known, residuals)
-    without = _without_closed_form(numbers, containing)
+    without = _without_closed_form(numbers, containing) if checked.derivation.closed else numbers
     numbers = {x for x in without if not _is_quadratic(checked, x, known, containing[x])}
     constants = {x for x in checked.state if initial(x) in fixed and fixed[initial(x)].is_number}
     for residual in residuals:
