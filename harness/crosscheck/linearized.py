@@ -21,6 +21,7 @@ import sympy as sp
 from mpmath import mp
 
 from ..description import Description
+from ..simulation.constraints.directions import or_one
 from ..simulation.matrices import Matrix, Vector
 from .described_motion import DescribedMotion
 from .evaluation import Steps
@@ -58,7 +59,7 @@ class DescribedEquations:
     Controls that servo-constraints or prescribed reactions move are the last coordinates.
     """
 
-    def __init__(self, description: Description, name: str) -> None:
+    def _init__(self, description: Description, name: str) -> None:
         scene = next(each for each in description.scenes if each.name == name)
         self.motion = DescribedMotion(description, scene)
         system = described_system(description.system, scene.effects)
@@ -395,7 +396,7 @@ def conditions_on_linearization(equations: DescribedEquations, content: Mapping[
     ------
     Condition
     """
-    yield from conditions_on_rates(equations, content)
+    yield from conditions_on_rates(equations, content, equations.scales([content["point"]]))
     n, s = len(content["coordinates"]), len(content["A"])
     shapes = {"mass": (n, n), "eigenvalues": (s, 2), "modes": (n, s, 2), "frequencies": (s,), "damping": (s,)}
     yield from conditions_on_shapes(content, shapes)
@@ -431,7 +432,9 @@ def _has_shape(part: Any, length: int, *lengths: int) -> bool:
     return len(part) == length and all(_has_shape(each, *lengths) for each in part if lengths)
 
 
-def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any]) -> Iterator[Condition]:
+def conditions_on_rates(
+    equations: DescribedEquations, content: Mapping[str, Any], scales: Mapping[str, Vector]
+) -> Iterator[Condition]:
     """Yield the conditions on a linear system: state, basis and matrices.
 
     Parameters
@@ -440,6 +443,8 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
         The reference.
     content : mapping
         Entries of a document of `linearize`.
+    scales : mapping of str to ndarray
+        Sizes of the quantities, as `DescribedEquations.scales` returns them.
 
     Yields
     ------
@@ -461,7 +466,7 @@ def conditions_on_rates(equations: DescribedEquations, content: Mapping[str, Any
     yield Condition("outputs", outputs != [*q, *v, *solved, *equations.outputs])
     yield from _conditions_on_point(equations, content)
     given_here, span = equations.at(point), equations.span
-    natural = {group: _or_one(sizes) for group, sizes in equations.scales([point]).items()}
+    natural = {group: or_one(sizes) for group, sizes in scales.items()}
     here, length = _in_natural_units(given_here, natural, span)
     mass, N = here["mass"], _matrix(content["basis"], m) * length / natural["q"][:, None]
     rates, rows = (np.hstack([_matrix(content[a], 2 * m), *_parts(content, b)]) for a, b in ("AB", "CD"))
@@ -542,7 +547,7 @@ def _conditions_on_rest(
     moving = [
         abs(point[name]) / size
         for group in ("v", "a", "du", "ddu")
-        for name, size in zip(equations.names(group), _or_one(scales[group]), strict=True)
+        for name, size in zip(equations.names(group), or_one(scales[group]), strict=True)
     ]
     changing = max((*moving, float(equations.changes_with_time)))
     yield Condition("rest", changing if content["at_rest"] else not changing)
@@ -633,7 +638,7 @@ def _reached(A: Matrix, B: Matrix) -> int:
     balanced, (scale, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     A, B = balanced / (np.linalg.norm(balanced) or 1.0), B / scale[:, None]
     lengths = np.linalg.norm(B, axis=0)
-    B = B / _or_one(lengths)
+    B = B / or_one(lengths)
     functionals, outside = np.eye(len(A)), B
     while outside.size:
         _, values, right = np.linalg.svd(outside.T)
@@ -691,13 +696,8 @@ def _least(matrix: Matrix, right: Matrix, sizes: Matrix | float = 0.0) -> Matrix
 
 
 def _of_least_squares(matrix: Matrix, right: Matrix, sizes: Vector) -> Matrix:
-    rows = _or_one(sizes)[:, None]
+    rows = or_one(sizes)[:, None]
     return np.linalg.lstsq(matrix / rows, right / rows, rcond=None)[0]
-
-
-def _or_one(sizes: Vector) -> Vector:
-    """Return sizes to divide by, with one in place of zero."""
-    return np.where(sizes, sizes, 1.0)
 
 
 def _sizes(*matrices: Matrix) -> Vector:

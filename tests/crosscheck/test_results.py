@@ -432,7 +432,19 @@ swing : holonomic_scene(system, control_law = [u = l_], parameter_values = [m = 
 """
 
 
-@pytest.mark.parametrize("units", [("10^-27", "10^-10", "10^-13"), ("10^24", "10^9", "10^7")], ids=["atoms", "planets"])
+ATOMS, PLANETS = ("10^-27", "10^-10", "10^-13"), ("10^24", "10^9", "10^7")
+
+
+def wrong_by_a_thousandth(content, path):
+    wrong = copy.deepcopy(content)
+    part = wrong
+    for key in path[:-1]:
+        part = part[key]
+    part[path[-1]] *= 1.001
+    return wrong
+
+
+@pytest.mark.parametrize("units", [ATOMS, PLANETS], ids=["atoms", "planets"])
 def test_wrong_results_in_other_units_disagree(units):
     """Sizes of one hid wrong results of atoms, and rejected equilibria that are right."""
     scene = holonom.system(MEASURED.format(*units))
@@ -451,9 +463,17 @@ def test_wrong_results_in_other_units_disagree(units):
     ]
     for content, path in changes:
         assert verify_result(scene.description, content).verdict is Verdict.AGREES
-        wrong = copy.deepcopy(content)
-        part = wrong
-        for key in path[:-1]:
-            part = part[key]
-        part[path[-1]] *= 1.001
-        assert verify_result(scene.description, wrong).verdict is Verdict.DISAGREES, path
+        found = verify_result(scene.description, wrong_by_a_thousandth(content, path))
+        assert found.verdict is Verdict.DISAGREES, path
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("units", [ATOMS, PLANETS], ids=["atoms", "planets"])
+def test_wrong_results_along_motions_in_other_units_disagree(units):
+    """Those of atoms were undecided, and right ones of planets rejected."""
+    scene = holonom.system(MEASURED.format(*units))
+    content = json.loads(json.dumps(along(scene)))
+    assert verify_result(scene.description, content).verdict is Verdict.AGREES
+    for path in (["points", 1, "x"], ["C", 1, 2, 0], ["transition", 2, 1, 0]):
+        found = verify_result(scene.description, wrong_by_a_thousandth(content, path))
+        assert found.verdict is Verdict.DISAGREES, path
