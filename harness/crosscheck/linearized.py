@@ -59,7 +59,7 @@ class DescribedEquations:
     Controls that servo-constraints or prescribed reactions move are the last coordinates.
     """
 
-    def _init__(self, description: Description, name: str) -> None:
+    def __init__(self, description: Description, name: str) -> None:
         scene = next(each for each in description.scenes if each.name == name)
         self.motion = DescribedMotion(description, scene)
         system = described_system(description.system, scene.effects)
