@@ -509,8 +509,9 @@ def conditions_on_rates(
         own, size = _deviation(here, "output", known)
         errors = _in_natural_units(_rounding_errors(equations, point, given_here), natural, span)[0]
         _, rounding = _deviation(errors, "output", known)
+        constant = ~np.hstack([here[f"output_by_{group}"] for group in known]).any(axis=1)
+        rounding[constant] += LARGER * np.finfo(float).eps * np.max(np.abs(rows))
         given = rows[2 * n + len(solved) :]
-        rounding = rounding + LARGER * np.finfo(float).eps * np.max(np.abs(rows))
         size = size + np.abs(given) + 10.0**DIGITS * rounding  # terms that cancel leave rounding errors
         yield Condition("outputs of the scene in C and D", own - given, size)
 
