@@ -135,9 +135,9 @@ class DescribedEquations:
 
     @property
     def changes_with_time(self) -> bool:
-        """True if the equations contain the time other than through the controls."""
+        """True if the equations of motion contain the time other than through the controls."""
         time = sp.Symbol("t", real=True)
-        return bool(self.motion.scene.prescribed_reactions) or any(each.has(time) for each in self._smooth)
+        return bool(self.motion.scene.prescribed_reactions) or any(each.has(time) for each in self._at_rest)
 
     @cached_property
     def reacting(self) -> list[int]:

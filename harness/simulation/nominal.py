@@ -2,7 +2,7 @@
 
 Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion does not depend
 on units. A scene may give them, ``nominal = [x = 1e-6]``. The others are found. A coordinate is as large as at the
-start or, if it starts near zero, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
+start or, if it is zero there, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
 zero, the distance counts that the motion goes in the longest time within which the first two of Picard's iterates
 agree. The time is this one, the time that the first velocities take for the size of the coordinates, or the length of
 the time span. Coordinates and time give the size of velocities.
@@ -37,8 +37,9 @@ MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `fi
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
 PROBE = 2.0**-10  # share of the largest coordinate by which all are moved to find masses that vanish
 VANISHING = 1e-12  # of the mass there: one that vanishes initially
-NONE = 1e-13  # of the largest coordinate: another one that is zero but for rounding, if a mass vanishes
-NEAR_ZERO = 1e-3  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
+ZERO_BY_ROUNDING = (
+    1e-12  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
+)
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
@@ -272,14 +273,16 @@ def _without_rounding(masses: Callable[[Matrix], Matrix], state: Matrix) -> tupl
     """Return masses, shape (n, 1), and the state, zero where they are rounding.
 
     A mass may vanish in the state alone, as of a body's e0 where it has not turned. Then others may be zero
-    by rounding: their sizes would be tolerances that are too fine, and divisors.
+    by rounding: their sizes would be tolerances that are too fine, and divisors. Such a mass vanishes where those are
+    zero, or changes by far where the others move.
     """
-    here = masses(state)
-    here = np.where(here < VANISHING * masses(beside(state)), 0.0, here)
-    if here.all():
-        return here, state
     q, rates = np.split(state, 2)
-    return here, np.concatenate([np.where(np.abs(q) <= NONE * np.max(np.abs(q)), 0.0, q), rates])
+    rounding = np.abs(q) <= ZERO_BY_ROUNDING * np.max(np.abs(q))
+    without = np.concatenate([np.where(rounding, 0.0, q), rates])
+    moved = np.where(np.concatenate([rounding, rounding]), state, beside(state))
+    here = masses(state)
+    vanishing = (masses(without) <= VANISHING * here) | (here < VANISHING * masses(moved))
+    return (np.where(vanishing, 0.0, here), without) if vanishing.any() else (here, state)
 
 
 def beside(state: Matrix) -> Matrix:
@@ -334,7 +337,7 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
     for at in np.split(zero, range(AT_ONCE, len(zero), AT_ONCE)) if span and len(zero) else ():
         size[at], time[at] = _from_zero(problem, roots[:, at], states[:, at], values[:, at], span)
     own = np.maximum(q, v * time)
-    felt = (roots * own >= NEAR_ZERO * size) | (own >= NEAR_ZERO * np.max(own, axis=0, initial=0.0))
+    felt = (roots * own >= ZERO_BY_ROUNDING * size) | (own >= ZERO_BY_ROUNDING * np.max(own, axis=0, initial=0.0))
     felt &= own > 0
     least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)

@@ -146,8 +146,9 @@ class LinearEquations:
 
     @property
     def changes_with_time(self) -> bool:
-        """True if the equations contain the time other than through the controls."""
-        return "t" in names_used(self.program)
+        """True if the equations of motion contain the time other than through the controls."""
+        rows = {name for name in self.program.outputs if not name.startswith("output")}
+        return "t" in names_used(computing(self.program, rows))
 
     @property
     def linear(self) -> bool:

@@ -1,5 +1,6 @@
 """Nominal sizes: what functions change by with them."""
 
+import math
 import warnings
 
 import numpy as np
@@ -87,3 +88,41 @@ def test_orientations_by_rounding_had_sizes_of_rounding_errors(turned):
 def _with_values(at, w):
     text = BODY.format(**at, w=w)
     return text.replace("*e1", f"*({at['e1']})").replace("*e0", f"*({at['e0']})")
+
+
+BESIDE = """system : holonomic_system(coordinates = [x, y], kinetic_energy = {energy}, forces = [{force}, -{M}*y])$
+scene : holonomic_scene(system, initial_state = [x = 2/5/10^{p}, dot(x) = -1/20/10^{p}, y = {y}, dot(y) = 0],
+  time_span = [0, 1/2], observe = [trajectory, X = 10^{p}*x, A = 10^{p}*ddot(x)]{until})$
+"""
+LIGHT = {"energy": "(dot(x)^2/10^6 + dot(y)^2)/2", "force": "-signum(x)/10^15", "M": 1, "p": 9, "y": 1}
+COUPLED = {
+    "energy": "(10^18*dot(x)^2 + (1 + 10^18*x^2)*dot(y)^2/10^12)/2",
+    "force": "-signum(x)*10^9",
+    "M": 0,
+    "p": 9,
+    "y": "3*10^5",
+}
+
+
+@pytest.mark.parametrize("scene", [LIGHT, COUPLED], ids=["a light mass", "masses that depend on it"])
+def test_a_small_coordinate_beside_a_large_one_has_its_sign(scene):
+    """It was zero by the size of the other, and its force was left out, with exit status 0."""
+    found = holonom.system(BESIDE.format(**scene, until="")).simulate(samples=2)
+    assert (found["X"][-1], found["A"][-1]) == pytest.approx((1 / 4, -1))
+
+
+def test_a_small_coordinate_beside_a_large_one_crosses_zero():
+    """The event had no sign by the size of the other."""
+    scene = LIGHT | {"force": "-1/10^15", "until": ", until = [10^9*x - 3/10]"}
+    assert holonom.system(BESIDE.format(**scene)).simulate(samples=2)["t"][-1] == pytest.approx(0.4)
+
+
+@pytest.mark.parametrize("engine", ["taylor", "robust"])
+def test_small_swings_of_a_pendulum_are_accurate_in_their_size(engine):
+    """They were to a size of one."""
+    text = """system : holonomic_system(coordinates = [x, y], kinetic_energy = (dot(x)^2 + dot(y)^2)/2,
+      potential_energy = 9*y, constraints = [x^2 + y^2 - 1])$
+    scene : holonomic_scene(system, initial_state = [x = 1/10^9, dot(x) = 0],
+      initial_guess = [y = -1, dot(y) = 0], time_span = [0, 10])$"""
+    found = holonom.system(text).simulate(samples=2, engine=engine)
+    assert found["x"][-1] == pytest.approx(1e-9 * math.cos(30), rel=1e-8)

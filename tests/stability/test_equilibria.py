@@ -243,6 +243,14 @@ def test_equations_with_the_time_are_refused():
     assert refused.value.kind is ErrorKind.NEVER_AT_REST
 
 
+def test_outputs_with_the_time_do_not_move_a_state_at_rest():
+    text = """system : holonomic_system(coordinates = [x], kinetic_energy = dot(x)^2/2, potential_energy = x^2/2)$
+      scene : holonomic_scene(system, initial_state = [x = 0, dot(x) = 0], time_span = [0, 1], observe = [o = t*x])$"""
+    scene = holonom.system(text)
+    assert stabilities(scene.equilibria()) == [Stability.STABLE]
+    assert scene.linearize().at_rest
+
+
 def test_the_command(holonom_here):
     answer = holonom_here("equilibria", "examples/pendulum.mac", "--control", "u=2", "--json", "-")
     found = json.loads(answer.stdout)
