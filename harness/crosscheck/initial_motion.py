@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import inf
 
 import sympy as sp
 from mpmath import mp
@@ -41,6 +42,7 @@ SAME = mp.mpf("1e-9")
 FEWEST_ROUNDED_DIGITS = 25
 """Digits of the denominator of a number that may be rounded."""
 
+SHORTENED = 4  # at most, the length of residuals in terms of that of a closed form made of them
 MANY_TOGETHER = 4
 """Initial values that equations fix together: such closed forms may be too long."""
 
@@ -365,14 +367,15 @@ def _for_all_states(
 ) -> Iterable[sp.Expr]:
     """Return residuals with fixed symbols that hold for all states.
 
-    They contain no symbol that is fixed for the scene's numbers only. Without closed forms, each number may be one.
+    They contain no symbol that is fixed for the scene's numbers only.
     """
     symbols, residuals = set(symbols), list(residuals)
     known = {symbol for symbol in symbols if initial(symbol) in fixed}
     numbers = {symbol for symbol in known if fixed[initial(symbol)].is_number}
     containing = _containing(known, residuals)
-    without = _without_closed_form(numbers, containing) if checked.derivation.closed else numbers
-    numbers = {x for x in without if not _is_quadratic(checked, x, known, containing[x])}
+    left_out = checked.scene.left_out
+    without = _without_closed_form(numbers, containing, left_out.limit if left_out else inf)
+    numbers = {x for x in without if not _has_root(checked, x, known, containing[x])}
     constants = {x for x in checked.state if initial(x) in fixed and fixed[initial(x)].is_number}
     for residual in residuals:
         present = residual.free_symbols & symbols
@@ -417,11 +420,14 @@ def _containing(symbols: set[sp.Symbol], residuals: Iterable[sp.Expr]) -> Mappin
     return found
 
 
-def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]]) -> set[sp.Symbol]:
+def _without_closed_form(
+    numbers: set[sp.Symbol], containing: Mapping[sp.Symbol, Sequence[sp.Expr]], limit: float
+) -> set[sp.Symbol]:
     """Return the symbols that have no closed form.
 
     They share residuals with many symbols, or with one that is not linear in them. Or the residuals are more than the
-    symbols: those that a closed form is made of may depend on each other in the initial state.
+    symbols: those that a closed form is made of may depend on each other in the initial state. Or the closed form may
+    be larger than what the record leaves out.
     """
     found: set[sp.Symbol] = set()
     waiting = set(numbers)
@@ -430,7 +436,8 @@ def _without_closed_form(numbers: set[sp.Symbol], containing: Mapping[sp.Symbol,
         waiting -= sharing
         residuals = {residual for x in sharing for residual in containing[x]}
         linear = not any(residual.diff(x).free_symbols & numbers for x in sharing for residual in residuals)
-        if len(sharing) >= MANY_TOGETHER or len(residuals) > len(sharing) or not linear:
+        length = sum(1 for residual in residuals for _ in sp.preorder_traversal(residual))
+        if len(sharing) >= MANY_TOGETHER or len(residuals) > len(sharing) or not linear or SHORTENED * length > limit:
             found |= sharing
     return found
 
@@ -449,8 +456,8 @@ def _sharing(
     return found
 
 
-def _is_quadratic(checked: CheckedScene, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
-    """Return True if one residual in the state fixes a symbol by a quadratic equation."""
+def _has_root(checked: CheckedScene, x: sp.Symbol, known: set[sp.Symbol], containing: Sequence[sp.Expr]) -> bool:
+    """Return True if one residual fixes a symbol by a linear or quadratic equation."""
     if len(containing) != 1 or containing[0].free_symbols & known != {x}:
         return False
     state = {*checked.state, checked.system.time}
@@ -458,7 +465,7 @@ def _is_quadratic(checked: CheckedScene, x: sp.Symbol, known: set[sp.Symbol], co
     if not containing[0].free_symbols <= state | numbers:
         return False
     polynomial = containing[0].as_poly(*containing[0].free_symbols)
-    return polynomial is not None and polynomial.degree(x) == 2
+    return polynomial is not None and polynomial.degree(x) in (1, 2)
 
 
 def _listed(names: Iterable[str]) -> str:

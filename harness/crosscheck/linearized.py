@@ -135,7 +135,7 @@ class DescribedEquations:
 
     @property
     def changes_with_time(self) -> bool:
-        """True if the equations of motion contain the time other than through the controls."""
+        """True if the equations of motion contain the time, except through controls."""
         time = sp.Symbol("t", real=True)
         return bool(self.motion.scene.prescribed_reactions) or any(each.has(time) for each in self._at_rest)
 

@@ -146,7 +146,7 @@ class LinearEquations:
 
     @property
     def changes_with_time(self) -> bool:
-        """True if the equations of motion contain the time other than through the controls."""
+        """True if the equations of motion contain the time, except through controls."""
         rows = {name for name in self.program.outputs if not name.startswith("output")}
         return "t" in names_used(computing(self.program, rows))
 

@@ -3,6 +3,7 @@
 import dataclasses
 import re
 from itertools import pairwise
+from math import inf
 
 import pytest
 import sympy as sp
@@ -119,8 +120,8 @@ def test_four_values_together_or_two_not_linearly_may_have_no_closed_form():
     groups = x[:3], x[3:7], x[7:]
     equations = [sum(x[:2]), x[1] - x[2], *(a + b for a, b in pairwise(x[3:7])), x[7] * x[8]]
     containing = {each: [e for e in equations if each in e.free_symbols] for each in x}
-    assert _without_closed_form({*x}, containing) == {*groups[1], *groups[2]}
-    assert _without_closed_form({*x[:6], x[8]}, containing) == set()
+    assert _without_closed_form({*x}, containing, inf) == {*groups[1], *groups[2]}
+    assert _without_closed_form({*x[:6], x[8]}, containing, inf) == set()
 
 
 @pytest.mark.parametrize(
