@@ -37,9 +37,7 @@ MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `fi
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
 PROBE = 2.0**-10  # share of the largest coordinate by which all are moved to find masses that vanish
 VANISHING = 1e-12  # of the mass there: one that vanishes initially
-ZERO_BY_ROUNDING = (
-    1e-12  # of the largest coordinate, as it is and in the mass metric: a light one is small in that alone
-)
+ZERO_BY_ROUNDING = 1e-12  # of the largest coordinate, as it is and in the mass metric, in which a light one is small
 
 Vector = NDArray[np.float64]
 Matrix = NDArray[np.float64]
