@@ -19,6 +19,7 @@ from .matrices import Matrices, MotionMatrices, Vector
 from .residuals import condition
 
 ILL_CONDITIONED, DEPENDENT = 1e8, 1e20  # condition of G: half of a double's digits lost, and none left
+SMALL = 1e-3  # of the largest coordinate, as it is and in the mass metric
 UNEQUAL_MASSES = 1e8  # ratio of the entries on A's diagonal: half of a double's digits
 SINGULAR_MASS = 1e-8  # least eigenvalue of a mass matrix with a diagonal of ones, of one that is singular
 ROUNDED_MASS = 1e-13  # of the largest mass: rounding
@@ -184,8 +185,11 @@ def _mass_ratio(at: Matrices, sizes: Vector) -> float:
     """Return the ratio of the largest to the smallest mass, in units of nominal sizes.
 
     If the mass matrix is singular, masses of the free directions are taken. Euler parameters near (1, 0, 0, 0) have a
-    small entry on the diagonal, but not a small mass.
+    small entry on the diagonal, but not a small mass. Nor has a coordinate that is small initially.
     """
+    lengths = sizes * np.sqrt(np.abs(at.mass.diagonal()))
+    small = (sizes < SMALL * sizes.max(initial=0.0)) & (lengths < SMALL * lengths.max(initial=0.0)) & (lengths > 0)
+    sizes = np.where(small, sizes * lengths.max(initial=0.0) / np.where(small, lengths, 1.0), sizes)
     mass = at.mass * sizes[:, None] * sizes
     masses = mass.diagonal()[mass.diagonal() > 0]
     if masses.size == len(mass):

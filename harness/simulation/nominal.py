@@ -2,12 +2,13 @@
 
 Tolerances, projections, events, switchings and residuals are relative to these sizes, so that a motion does not depend
 on units. A scene may give them, ``nominal = [x = 1e-6]``. The others are found. A coordinate is as large as at the
-start or, if it is zero there, as the least of the others in the mass metric: A_ii q_i^2 is the same. If all start at
-zero, the distance counts that the motion goes in the longest time within which the first two of Picard's iterates
-agree. The time is this one, the time that the first velocities take for the size of the coordinates, or the length of
-the time span. Coordinates and time give the size of velocities.
+start or, if it is zero there, as the least of the others in the mass metric: A_ii q_i^2 is the same. A small difference
+of large coordinates is zero, too: constraints move it by rounding errors of these. If all start at zero, the distance
+counts that the motion goes in the longest time within which the first two of Picard's iterates agree. The time is this
+one, the time that the first velocities take for the size of the coordinates, or the length of the time span.
+Coordinates and time give the size of velocities.
 
-A size that is too large is a tolerance that is too coarse, one that is too small only takes more steps.
+A size that is too large is a tolerance that is too coarse, one that is too small takes more steps, or is rounding.
 """
 
 from collections.abc import Callable, Sequence
@@ -36,6 +37,7 @@ COARSE = 1e3  # power in which tolerances change: what is compiled with one serv
 MOVED = 2.0**-10  # share of the nominal sizes by which a state is moved for `first_order_changes`
 STATES_AT_ONCE = 4096  # moved states that are evaluated together
 PROBE = 2.0**-10  # share of the largest coordinate by which all are moved to find masses that vanish
+MOVED_BY_OTHERS = 1e-3  # of what constraints move a coordinate by: one below has no digits to the tolerances
 VANISHING = 1e-12  # of the mass there: one that vanishes initially
 ZERO_BY_ROUNDING = 1e-12  # of the largest coordinate, as it is and in the mass metric, in which a light one is small
 
@@ -336,10 +338,28 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
         size[at], time[at] = _from_zero(problem, roots[:, at], states[:, at], values[:, at], span)
     own = np.maximum(q, v * time)
     felt = (roots * own >= ZERO_BY_ROUNDING * size) | (own >= ZERO_BY_ROUNDING * np.max(own, axis=0, initial=0.0))
-    felt &= own > 0
+    felt &= (own > 0) & (own >= MOVED_BY_OTHERS * _moved_by_others(problem, roots, states, values))
     least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
     return _with_given(problem, np.where((size > 0) & (size < np.inf), found, 1.0), time)
+
+
+def _moved_by_others(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix) -> Matrix:
+    """Return the displacements by constraints if all coordinates change by themselves.
+
+    Each constraint is satisfied alone, in the mass metric. The shape is (n, k).
+    """
+    names = [name for name in problem.matrices.outputs if name.startswith("J[")]
+    moved = np.zeros(roots.shape)
+    if not names:
+        return moved
+    rows, columns = np.array([list(map(int, name[2:-1].split(","))) for name in names]).T - 1
+    slopes = np.abs(_Outputs(problem, problem.matrices, names)(np.array([float(problem.start["t"])]), states, values))
+    changes, squares = np.zeros((2, rows.max() + 1, states.shape[1]))
+    np.add.at(changes, rows, slopes * np.abs(states[columns]))
+    np.add.at(squares, rows, (slopes / roots[columns]) ** 2)
+    np.maximum.at(moved, columns, np.nan_to_num(slopes / roots[columns] ** 2 * (changes / squares)[rows]))
+    return moved
 
 
 def _from_zero(

@@ -10,6 +10,7 @@ import holonom
 from holonom.failures import HolonomError
 from holonom.program.precision import read_precision
 from holonom.simulation import nominal
+from holonom.simulation.hard_cases import Difficulty
 from holonom.simulation.nominal import Nominal, first_order_changes, share_of
 
 
@@ -126,3 +127,16 @@ def test_small_swings_of_a_pendulum_are_accurate_in_their_size(engine):
       initial_guess = [y = -1, dot(y) = 0], time_span = [0, 10])$"""
     found = holonom.system(text).simulate(samples=2, engine=engine)
     assert found["x"][-1] == pytest.approx(1e-9 * math.cos(30), rel=1e-8)
+
+
+@pytest.mark.parametrize("engine", ["runge-kutta", "robust"])
+def test_a_small_difference_of_large_coordinates_has_not_its_own_size(engine):
+    """Its rounding errors were larger than the tolerances: the engines did not end, or a pivot vanished for them."""
+    text = """system : holonomic_system(coordinates = [y, z, x], kinetic_energy = (dot(x)^2 + dot(y)^2 + dot(z)^2)/2,
+      potential_energy = (x^2 + y^2 + z^2)/2, constraints = [x - y + z])$
+    scene : holonomic_scene(system, initial_state = [y = 1, x = 1/10^11, dot(y) = 0, dot(x) = 0],
+      initial_guess = [z = 1, dot(z) = 0], time_span = [0, 1])$"""
+    found = holonom.system(text).simulate(samples=2, engine=engine)
+    assert found.report.steps < 30
+    assert (found["x"][-1], found["y"][-1]) == pytest.approx((1e-11 * math.cos(1), math.cos(1)), abs=1e-13, rel=1e-11)
+    assert Difficulty.MASS_RATIO not in found.report.cases
