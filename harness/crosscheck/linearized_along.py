@@ -57,7 +57,7 @@ def conditions_on_linearized_motion(equations: DescribedEquations, content: Mapp
     C = np.array(content["C"]).reshape(count, len(content["outputs"]), size)
     transition = np.array(content["transition"]).reshape(count, size, size)
     deviations = C @ transition
-    motion = _Motion(equations, points)
+    motion = _Motion(equations, points, scales)
     if equations.switches or not motion.is_determined:
         if size:
             yield Condition("transition", None)
@@ -83,7 +83,9 @@ def conditions_on_linearized_motion(equations: DescribedEquations, content: Mapp
 class _Motion:
     """The motion of a described scene and its deviations, in units of their sizes."""
 
-    def __init__(self, equations: DescribedEquations, points: Sequence[Mapping[str, float]]) -> None:
+    def __init__(
+        self, equations: DescribedEquations, points: Sequence[Mapping[str, float]], scales: Mapping[str, Vector]
+    ) -> None:
         self._equations = equations
         self._n = len(equations.names("q"))
         solved = range(len(equations.multipliers), len(equations.names("lambda")))
@@ -91,7 +93,7 @@ class _Motion:
         here = [equations.quickly_at(point) for point in points]
         masses = np.sqrt(np.abs(here[0]["mass"].diagonal()))
         reached = np.max([[abs(point[name]) for name in equations.names("v")] for point in points], axis=0)
-        q, v, a = (or_one(equations.scales(points)[group]) for group in "qva")
+        q, v, a = (or_one(scales[group]) for group in "qva")
         self.units = np.concatenate([_not_negligible(each, masses) for each in (q, np.maximum(v, reached))])
         inertia = max(np.max(np.abs(each["equation_by_a"] * a), initial=0.0) for each in here)
         pushes = np.max([np.abs(each["equation_by_lambda"]).max(axis=0, initial=0.0) for each in here], axis=0)

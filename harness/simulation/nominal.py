@@ -13,6 +13,7 @@ A size that is too large is a tolerance that is too coarse, one that is too smal
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from math import log
 from typing import NamedTuple
 
@@ -230,7 +231,9 @@ def nominal_of(problem: MotionProblem) -> Nominal:
     return _completed(problem, last - first)
 
 
-def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, values: Matrix, span: float) -> Nominal:
+def nominal_at_each(
+    problem: MotionProblem, mass: Matrix, jacobian: Matrix, states: Matrix, values: Matrix, span: float
+) -> Nominal:
     """Return the nominal sizes of k motions of one problem.
 
     Parameters
@@ -239,6 +242,8 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, values
         The common problem.
     mass : ndarray, shape (n, n, k)
         A at the initial time of each motion.
+    jacobian : ndarray, shape (g, n, k)
+        J there.
     states : ndarray, shape (2n, k)
         Initial state of each motion.
     values : ndarray, shape (p, k)
@@ -252,7 +257,9 @@ def nominal_at_each(problem: MotionProblem, mass: Matrix, states: Matrix, values
         Shapes (k,) and (2n, k).
     """
     with np.errstate(all="ignore"):
-        return _sizes(problem, _roots(np.moveaxis(np.diagonal(mass), -1, 0)), states, values, span)
+        roots, places = _roots(np.moveaxis(np.diagonal(mass), -1, 0)), np.nonzero(jacobian.any(axis=-1))
+        moved = _moved_by_others(places, jacobian[places], roots, states)
+        return _sizes(problem, roots, moved, states, values, span)
 
 
 def _completed(problem: MotionProblem, span: float) -> Nominal:
@@ -263,9 +270,13 @@ def _completed(problem: MotionProblem, span: float) -> Nominal:
     state = np.array([[float(problem.start[name])] for name in problem.state])
     values, n = np.reshape(problem.numbers, (-1, 1)), len(problem.coordinates)
     with np.errstate(all="ignore"):
-        outputs = _Outputs(problem, problem.matrices, [f"A[{s},{s}]" for s in range(1, n + 1)])
-        masses, state = _without_rounding(lambda q: outputs(np.array([float(problem.start["t"])]), q, values), state)
-        sizes = _sizes(problem, _roots(masses), state, values, span)
+        slopes = [name for name in problem.matrices.outputs if name.startswith("J[")]
+        outputs = _Outputs(problem, problem.matrices, [*(f"A[{s},{s}]" for s in range(1, n + 1)), *slopes])
+        at = partial(outputs, np.array([float(problem.start["t"])]), values=values)
+        masses, state = _without_rounding(lambda state: at(states=state)[:n], state)
+        roots, places = _roots(masses), [[int(k) - 1 for k in name[2:-1].split(",")] for name in slopes]
+        moved = _moved_by_others(np.array(places, dtype=int).reshape(-1, 2).T, at(states=state)[n:], roots, state)
+        sizes = _sizes(problem, roots, moved, state, values, span)
     return Nominal(float(sizes.time[0]), sizes.state[:, 0])
 
 
@@ -316,13 +327,17 @@ def _with_given(problem: MotionProblem, coordinates: Matrix, time: Vector) -> No
     return Nominal(time, np.concatenate([coordinates, velocities.reshape(coordinates.shape)]))
 
 
-def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix, span: float) -> Nominal:
+def _sizes(
+    problem: MotionProblem, roots: Matrix, moved: Matrix, states: Matrix, values: Matrix, span: float
+) -> Nominal:
     """Return the sizes of k motions.
 
     Parameters
     ----------
     roots : ndarray, shape (n, k)
         Of the masses on the diagonal.
+    moved : ndarray, shape (n, k)
+        Displacements by constraints, as `_moved_by_others` returns them.
     states : ndarray, shape (2n, k)
         At the initial time.
     span : float
@@ -338,24 +353,20 @@ def _sizes(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix
         size[at], time[at] = _from_zero(problem, roots[:, at], states[:, at], values[:, at], span)
     own = np.maximum(q, v * time)
     felt = (roots * own >= ZERO_BY_ROUNDING * size) | (own >= ZERO_BY_ROUNDING * np.max(own, axis=0, initial=0.0))
-    felt &= (own > 0) & (own >= MOVED_BY_OTHERS * _moved_by_others(problem, roots, states, values))
+    felt &= (own > 0) & (own >= MOVED_BY_OTHERS * moved)
     least = np.min(np.where(felt, roots * own, np.inf), axis=0, initial=np.inf)
     found = np.where(felt, own, np.where(least < np.inf, least, size) / roots)
     return _with_given(problem, np.where((size > 0) & (size < np.inf), found, 1.0), time)
 
 
-def _moved_by_others(problem: MotionProblem, roots: Matrix, states: Matrix, values: Matrix) -> Matrix:
+def _moved_by_others(places: Sequence[NDArray[np.int_]], slopes: Matrix, roots: Matrix, states: Matrix) -> Matrix:
     """Return the displacements by constraints if all coordinates change by themselves.
 
-    Each constraint is satisfied alone, in the mass metric. The shape is (n, k).
+    Each constraint is satisfied alone, in the mass metric. The shape is (n, k). Slopes are the entries of J at places
+    (rows, columns).
     """
-    names = [name for name in problem.matrices.outputs if name.startswith("J[")]
-    moved = np.zeros(roots.shape)
-    if not names:
-        return moved
-    rows, columns = np.array([list(map(int, name[2:-1].split(","))) for name in names]).T - 1
-    slopes = np.abs(_Outputs(problem, problem.matrices, names)(np.array([float(problem.start["t"])]), states, values))
-    changes, squares = np.zeros((2, rows.max() + 1, states.shape[1]))
+    (rows, columns), slopes, moved = places, np.abs(slopes), np.zeros(roots.shape)
+    changes, squares = np.zeros((2, rows.max(initial=-1) + 1, states.shape[1]))
     np.add.at(changes, rows, slopes * np.abs(states[columns]))
     np.add.at(squares, rows, (slopes / roots[columns]) ** 2)
     np.maximum.at(moved, columns, np.nan_to_num(slopes / roots[columns] ** 2 * (changes / squares)[rows]))

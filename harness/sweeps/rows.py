@@ -189,7 +189,7 @@ class RowMaker:
         if not self._moves:
             states = starts.states[:, there]
             at = self._batch_matrices(self._start, states, rows.values[:, there])
-            nominal = nominal_at_each(self._problem, at.mass, states, rows.values[:, there], 0.0)
+            nominal = nominal_at_each(self._problem, at.mass, at.jacobian, states, rows.values[:, there], 0.0)
             left = constraint_residuals(at, states, nominal)
             rows.residual[there] = np.maximum(left["position"], left["velocity"])
             return
@@ -219,7 +219,8 @@ class RowMaker:
         """Integrate motions in batches, and return the rows that need another method."""
         values = rows.values[:, there]
         start = self._batch_matrices(self._start, states, values), states
-        nominal = nominal_at_each(self._problem, start[0].mass, states, values, self._end - self._start)
+        initial = start[0].mass, start[0].jacobian
+        nominal = nominal_at_each(self._problem, *initial, states, values, self._end - self._start)
         apart = (nominal.state * COARSE < nominal_of(self._common).state[:, None]).any(axis=0)
         apart |= is_indefinite(start[0].mass)
         if apart.any():

@@ -92,15 +92,14 @@ def _with_values(at, w):
 
 
 BESIDE = """system : holonomic_system(coordinates = [x, y], kinetic_energy = {energy}, forces = [{force}, -{M}*y])$
-scene : holonomic_scene(system, initial_state = [x = 2/5/10^{p}, dot(x) = -1/20/10^{p}, y = {y}, dot(y) = 0],
-  time_span = [0, 1/2], observe = [trajectory, X = 10^{p}*x, A = 10^{p}*ddot(x)]{until})$
+scene : holonomic_scene(system, initial_state = [x = 2/5/10^9, dot(x) = -1/20/10^9, y = {y}, dot(y) = 0],
+  time_span = [0, 1/2], observe = [trajectory, X = 10^9*x, A = 10^9*ddot(x)]{until})$
 """
-LIGHT = {"energy": "(dot(x)^2/10^6 + dot(y)^2)/2", "force": "-signum(x)/10^15", "M": 1, "p": 9, "y": 1}
+LIGHT = {"energy": "(dot(x)^2/10^6 + dot(y)^2)/2", "force": "-signum(x)/10^15", "M": 1, "y": 1}
 COUPLED = {
     "energy": "(10^18*dot(x)^2 + (1 + 10^18*x^2)*dot(y)^2/10^12)/2",
     "force": "-signum(x)*10^9",
     "M": 0,
-    "p": 9,
     "y": "3*10^5",
 }
 
